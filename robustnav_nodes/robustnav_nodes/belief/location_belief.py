@@ -1,0 +1,57 @@
+"""The belief: a probability for each candidate location, given everything observed so far."""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from robustnav_msgs_py.values import BeliefCloud, Float64
+from robustnav_nodes.search_space.candidates import Candidates
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LocationBelief:
+    """The vector R (thesis 3.2.1.3) over the k candidates: sums to one, never 0, never NaN.
+
+    probability: float64 [k].
+    """
+
+    candidates: Candidates
+    probability: Float64
+
+    @classmethod
+    def uniform(cls, candidates: Candidates) -> "LocationBelief":
+        """Nothing is known yet: 1/k each (C1: k candidates; the thesis writes n, its number of poses)."""
+        count = len(candidates)
+        return cls(candidates=candidates, probability=np.full(count, 1.0 / count))
+
+    def updated(self, factor: Float64, probability_floor: float) -> "LocationBelief":
+        """Bayes' rule with `factor` (d, float64 [k], see `observation`): p_j <- p_j d_j / sum (eq. 3.1).
+
+        C4: no location falls below `probability_floor` / k, so the sum is never 0 and every location can
+        come back. A factor that is not finite or sums to nothing leaves the belief as it is.
+        """
+        product = self.probability * factor
+        total = float(product.sum())
+        if not math.isfinite(total) or total <= 0.0 or bool(np.any(product < 0.0)):
+            return self
+        raised = np.maximum(product / total, probability_floor / len(product))
+        return dataclasses.replace(self, probability=raised / raised.sum())
+
+    def normalised_entropy(self) -> float:
+        """Entropy over its maximum log k: 1 where nothing is known, near 0 where one location is sure."""
+        count = len(self.probability)
+        if count == 1:
+            return 0.0
+        entropy = -float(np.sum(self.probability * np.log(self.probability)))
+        return min(1.0, max(0.0, entropy / math.log(count)))
+
+    def cloud(self, stamp_ns: int, frame_id: str) -> BeliefCloud:
+        """The belief as it is published; `stamp_ns` is the stamp of the last observation looked at."""
+        return BeliefCloud(
+            position_m=self.candidates.position_m,
+            probability=self.probability.copy(),
+            stamp_ns=stamp_ns,
+            frame_id=frame_id,
+        )

@@ -1,0 +1,155 @@
+"""The belief node: detections and poses in, where the target may be out."""
+
+import sys
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from std_msgs.msg import Float64
+
+from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
+from robustnav_msgs_py.pose_history import PoseHistory
+from robustnav_msgs_py.values import Detections, OccupancyMap
+from robustnav_nodes.belief.belief_map import belief_map
+from robustnav_nodes.belief.detector_statistics import DetectorStatistics, read_detector_statistics
+from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.belief.tracker import BeliefTracker
+from robustnav_nodes.belief.view_gate import Verdict
+from robustnav_nodes.graph.node import GraphNode
+from robustnav_nodes.graph.spin import run_nodes
+from robustnav_nodes.search_space.camera_view import CameraView, build_camera_view
+from robustnav_nodes.search_space.floor_inputs import FloorInputs
+
+
+class Belief(GraphNode[BeliefParameters]):
+    """Keeps the belief about the target of the search.
+
+    Hears `map`, `search/candidates`, `odom`, `search/target`, `detections`, `detections/labels`. Says
+    `belief/cloud` after every observation, whether it counted or not: its stamp is that of the last
+    observation looked at, which is how the planner knows that its view is in. Says `belief/map` and
+    `belief/entropy` when the belief changed. Serves `belief/get_map` and `~/reset`.
+    """
+
+    executable = "belief"
+    declaration = BeliefParameters
+
+    def configure(self) -> None:
+        """Open the topics."""
+        limits = self.parameters
+        path = limits.detector_statistics_file
+        self._statistics = read_detector_statistics(Path(path)) if path else DetectorStatistics()
+        self._floor = FloorInputs(limits.mask_wait_s)
+        self._view: CameraView | None = None
+        self._tracker: BeliefTracker | None = None
+        self._poses = PoseHistory()
+        self._labels: tuple[str, ...] = ()
+        self._target = ""
+        self._stamp_ns = 0
+        self._builder = self.worker("search space")
+        self._cloud = self.publisher("belief/cloud")
+        self._map = self.publisher("belief/map")
+        self._entropy = self.publisher("belief/entropy")
+        self.subscribe("map", wire.map_from_message, self._on_map)
+        self.subscribe("search/candidates", wire.map_from_message, self._floor.heard_mask)
+        self.subscribe("odom", wire.odometry_from_message, self._poses.add)
+        self.subscribe("search/target", wire.text_from_message, self._on_target)
+        self.subscribe("detections/labels", wire.labels_from_message, self._on_labels)
+        self.subscribe("detections", wire.detections_from_message, self._on_detections)
+        self.serve("belief/get_map", self._get_map)
+        self.serve("~/reset", self._reset)
+        self.every(limits.floor_check_s, self._build, steady=True)
+
+    def _on_map(self, floor_map: OccupancyMap) -> None:
+        self._floor.heard_map(floor_map, time.monotonic())
+
+    def _build(self) -> None:
+        inputs = None if self._builder.busy else self._floor.take(time.monotonic())
+        if inputs is not None:
+            self._builder.submit(partial(build_camera_view, *inputs, self.parameters), self._on_view)
+
+    def _on_view(self, view: CameraView) -> None:
+        self._view = view
+        self.health.figure("candidate locations", len(view.candidates))
+        self._start()
+
+    def _on_target(self, target: str) -> None:
+        self._target = target.strip()
+        self._start()
+
+    def _on_labels(self, labels: tuple[str, ...]) -> None:
+        self._labels = labels
+
+    def _start(self) -> None:
+        """A new belief for the target: nothing has been observed."""
+        self._tracker = None
+        if self._view is not None and self._target:
+            self._tracker = BeliefTracker(
+                view=self._view, statistics=self._statistics.of(self._target), parameters=self.parameters
+            )
+            self._stamp_ns = 0
+            self._say_cloud()
+            self._say_summary()
+
+    def _on_detections(self, detections: Detections) -> None:
+        odometry = self._poses.at(detections.stamp_ns)
+        if self._tracker is None or odometry is None or not self._labels:
+            return
+        of_target = np.array([self._labels[label] == self._target for label in detections.label], dtype=bool)
+        mount = CameraMount(
+            x_m=self.parameters.camera_forward_m,
+            z_m=self.parameters.camera_height_m,
+            pitch_rad=self.parameters.camera_pitch_rad,
+        )
+        places = map_from_base(odometry.pose, base_from_optical(mount, detections.position_m[of_target]))
+        verdict = self._tracker.observe(
+            odometry.pose,
+            places,
+            linear_m_s=odometry.linear_m_s,
+            angular_rad_s=odometry.angular_rad_s,
+        )
+        self._stamp_ns = detections.stamp_ns
+        self.health.count(f"observations {verdict}")
+        self._say_cloud()
+        if verdict is Verdict.COUNTED:
+            self._say_summary()
+
+    def _say_cloud(self) -> None:
+        if self._tracker is not None and self._view is not None:
+            cloud = self._tracker.belief.cloud(self._stamp_ns, self._view.frame_id)
+            self._cloud.publish(wire.belief_to_message(cloud))
+
+    def _say_summary(self) -> None:
+        if self._tracker is not None:
+            entropy = self._tracker.belief.normalised_entropy()
+            self._entropy.publish(Float64(data=entropy))
+            self._map.publish(self._map_message())
+            self.health.figure("entropy", entropy)
+
+    def _map_message(self) -> Any:
+        assert self._tracker is not None
+        assert self._view is not None
+        cloud = self._tracker.belief.cloud(self._stamp_ns, self._view.frame_id)
+        return wire.map_to_message(belief_map(cloud, self._view.candidates.size_m))
+
+    def _get_map(self, _request: Any, response: Any) -> Any:
+        if self._tracker is not None:  # an empty map says that there is no belief yet
+            response.map = self._map_message()
+        return response
+
+    def _reset(self, _request: Any, response: Any) -> Any:
+        self._start()
+        response.success = self._tracker is not None
+        response.message = "" if response.success else "there is no target or no map yet"
+        return response
+
+
+def main() -> int:
+    """Run the node until it is told to stop."""
+    return run_nodes([Belief])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,62 @@
+"""Follows one target: takes observations, judges which count, and keeps the belief."""
+
+import numpy as np
+
+from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.values import Float64, Pose2D
+from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_nodes.belief.location_belief import LocationBelief
+from robustnav_nodes.belief.observation import detected_factor, missed_factor, usable_f1
+from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.belief.view_gate import Verdict, ViewGate
+from robustnav_nodes.search_space.camera_view import CameraView
+
+
+class BeliefTracker:
+    """The belief about one target from the first observation to the last. Used from one thread.
+
+    `statistics` are the detector's for the target's class. Start a new tracker for a new target, or to
+    forget every observation.
+    """
+
+    def __init__(
+        self, *, view: CameraView, statistics: ClassStatistics, parameters: BeliefParameters
+    ) -> None:
+        self._view = view
+        self._parameters = parameters
+        self._f1 = usable_f1(statistics.f1, parameters.f1_min, parameters.f1_max)
+        self._gate = ViewGate(parameters)
+        self.belief = LocationBelief.uniform(view.candidates)
+
+    def observe(
+        self,
+        robot: Pose2D,
+        detected_m: Float64,
+        *,
+        linear_m_s: float = 0.0,
+        angular_rad_s: float = 0.0,
+    ) -> Verdict:
+        """Take one image's detections of the target into account, unless the view does not count.
+
+        robot: its centre when the image was taken, in the map; detected_m: float [m, 2 or 3], places of the
+        target's class in the map, m = 0 where the detector was silent; the speeds are the robot's. Raises
+        BadMessageError where a place is not finite.
+        """
+        places = np.asarray(detected_m, dtype=np.float64)
+        if places.ndim != 2 or (len(places) > 0 and places.shape[1] not in (2, 3)):
+            raise BadMessageError(f"detected places must be [m, 2] or [m, 3], not {places.shape}")
+        if not np.isfinite(places).all():
+            raise BadMessageError("a detected place is not finite; is the depth under its box valid?")
+        verdict = self._gate.judge(robot, linear_m_s, angular_rad_s)
+        if verdict is not Verdict.COUNTED:
+            return verdict
+        limits = self._parameters
+        in_view = self._view.visible(robot)
+        if len(places) == 0:
+            factor = missed_factor(in_view, self._f1)
+        else:
+            factor = detected_factor(
+                self._view.candidates, in_view, places, limits.detection_sigma_m, limits.detection_floor
+            )
+        self.belief = self.belief.updated(factor, limits.probability_floor)
+        return verdict

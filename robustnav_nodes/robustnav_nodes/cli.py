@@ -1,0 +1,171 @@
+"""The command `robustnav`. Exit codes: 0 done, 1 the run failed (with one sentence), 2 wrong usage."""
+
+import sys
+import time
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from robustnav_msgs_py.errors import BadParameterError, RobustnavError
+
+app = typer.Typer(
+    help="Ask a robot to find an object; it works although the detector lies.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+bag_app = typer.Typer(help="Look into recorded runs.", no_args_is_help=True)
+app.add_typer(bag_app, name="bag")
+
+DEMO_LIMIT_S = 110.0
+
+
+class Scenario(StrEnum):
+    """What the demo shows."""
+
+    SEARCH = "search"
+
+
+class User(StrEnum):
+    """Who talks to the robot."""
+
+    SIMULATED = "simulated"
+    HUMAN = "human"
+
+
+def _console() -> Console:
+    return Console(highlight=False)
+
+
+@app.command()
+def demo(
+    scenario: Annotated[Scenario, typer.Option(help="what to show")] = Scenario.SEARCH,
+    user: Annotated[User, typer.Option(help="who asks: a simulated person, or you (robustnav chat)")] = User.SIMULATED,
+    seed: Annotated[int, typer.Option(min=0, help="decides the home, the object and the detector's errors")] = 1,
+    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default bags/demo_DATE")] = None,
+    target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
+    speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds per second")] = 2.0,
+) -> None:
+    """Run one search in a simulated home, record it, and sum it up from the bag."""
+    from robustnav_nodes.graph.demo import Demo
+    from robustnav_nodes.graph.demo_summary import show_summary
+    from robustnav_nodes.graph.search_graph import RunPlan
+
+    console = _console()
+    folder = bag or Path("bags") / f"demo_{time.strftime('%Y%m%d_%H%M%S')}"
+    if folder.exists():
+        raise BadParameterError(f"the bag {str(folder)!r} exists already; name another one with --bag")
+    human = user is User.HUMAN
+    plan = RunPlan(
+        seed=seed,
+        with_simulated_user=not human,
+        bag=folder,
+        parameters={
+            "sim_bridge": {"real_time_factor": speed},
+            "simulated_user": {"target": target},
+        },
+    )
+    console.print(f"robustnav demo: {scenario.value} in a simulated home, seed {seed}, {speed:g} times real time")
+    if human:
+        console.print("talk to the robot from another terminal: [bold]robustnav chat[/]   (Ctrl-C here ends the demo)")
+    else:
+        console.print("[dim]starting 8 nodes, a process each; the first time, numba compiles the planner[/]")
+    logs = folder.parent / f"{folder.name}_logs"
+    end = Demo(plan, console=console, log_folder=logs, timeout_s=None if human else DEMO_LIMIT_S).run()
+    if not show_summary(console, end, folder, logs):
+        raise typer.Exit(1)
+
+
+@app.command()
+def up(
+    params: Annotated[Path | None, typer.Option(help="ROS parameter file (YAML)")] = None,
+    one_process: Annotated[bool, typer.Option("--one-process", help="all nodes in this process")] = False,
+    no_record: Annotated[bool, typer.Option("--no-record", help="record nothing")] = False,
+    sim: Annotated[bool, typer.Option(help="with the simulated home; --no-sim on a robot")] = True,
+    user: Annotated[User, typer.Option(help="who asks")] = User.HUMAN,
+    seed: Annotated[int, typer.Option(min=0, help="decides the simulated home and the planner's chances")] = 1,
+    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default bags/run_DATE")] = None,
+) -> None:
+    """Run the graph until stopped (Ctrl-C)."""
+    from robustnav_nodes.graph.search_graph import RunPlan
+    from robustnav_nodes.graph.up import run_graph
+
+    folder = bag or Path("bags") / f"run_{time.strftime('%Y%m%d_%H%M%S')}"
+    plan = RunPlan(
+        seed=seed,
+        with_simulation=sim,
+        with_simulated_user=user is User.SIMULATED,
+        bag=None if no_record else folder,
+        user_parameters=params,
+        parameters={},
+    )
+    code = run_graph(plan, _console(), log_folder=folder.parent / f"{folder.name}_logs", one_process=one_process)
+    raise typer.Exit(code)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})
+def run(context: typer.Context, package: str, executable: str) -> None:
+    """Start one node, as `ros2 run PACKAGE EXECUTABLE [args]` does."""
+    raise typer.Exit(_run(package, executable, context.args))
+
+
+@app.command()
+def chat() -> None:
+    """Talk to the robot from this terminal."""
+    from robustnav_nodes.chat.terminal import chat as talk
+
+    raise typer.Exit(talk(_console()))
+
+
+@app.command()
+def doctor() -> None:
+    """Say what is missing, mismatched or slow on this machine, and the remedy."""
+    from robustnav_nodes.graph.doctor import Finding, examine
+
+    table = Table("", "what", "found", "remedy")
+    findings = examine()
+    marks = {Finding.Level.OK: "[green]ok[/]", Finding.Level.NOTE: "[yellow]note[/]", Finding.Level.BAD: "[red]bad[/]"}
+    for finding in findings:
+        table.add_row(marks[finding.level], finding.what, finding.found, finding.remedy)
+    _console().print(table)
+    if any(finding.level is Finding.Level.BAD for finding in findings):
+        raise typer.Exit(1)
+
+
+@bag_app.command("info")
+def bag_info_command(bag: Path) -> None:
+    """What a bag holds: topics, counts, rates, QoS, and the manifest of its run."""
+    from bags.info import bag_info, render
+    from bags.reader import open_bag
+
+    with open_bag(bag) as opened:
+        _console().print(render(bag_info(opened)))
+
+
+def _run(package: str, executable: str, arguments: list[str]) -> int:
+    from robustnav_nodes.graph.environment import prepare_environment
+    from robustnav_nodes.graph.executables import run_executable
+
+    prepare_environment()
+    return run_executable(package, executable, arguments)
+
+
+def main() -> int:
+    """Entry point; errors that robustnav raises on purpose become one sentence."""
+    try:
+        app()
+    except BadParameterError as error:
+        print(f"robustnav: {error}", file=sys.stderr)
+        return 2
+    except RobustnavError as error:
+        print(f"robustnav: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,119 @@
+"""The front door: takes what the person says, decides what the robot searches for and what it answers."""
+
+from dataclasses import dataclass
+
+from robustnav_msgs_py.records import Decision, DialogueState, SearchPhase, SearchState
+from robustnav_msgs_py.values import Pose2D
+from robustnav_nodes.dialogue.class_names import listed, matching_class
+from robustnav_nodes.dialogue.explanations import describe_place, explain
+from robustnav_nodes.dialogue.parameters import DialogueParameters
+from robustnav_nodes.dialogue.requests import Request, RequestKind, UnreadableLineError, read_line
+
+SHOWN_CHARS = 120
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reaction:
+    """What follows from a line: `answer` for the person, `target` for the search ("" stops it; None: as it is)."""
+
+    answer: str
+    target: str | None = None
+
+
+class FrontDoor:
+    """Keeps what the dialogue knows. Owned by the dialogue node, used in its executor thread only."""
+
+    def __init__(self, parameters: DialogueParameters) -> None:
+        self._parameters = parameters
+        self._names: tuple[str, ...] = ()
+        self._search = SearchState()
+        self._decision: Decision | None = None
+        self._state = DialogueState()
+
+    @property
+    def state(self) -> DialogueState:
+        """What the dialogue is about."""
+        return self._state
+
+    def hear_names(self, names: tuple[str, ...]) -> None:
+        """The classes that the detector knows."""
+        self._names = names
+
+    def hear_decision(self, decision: Decision) -> None:
+        """The planner decided."""
+        self._decision = decision
+
+    def hear_search(self, search: SearchState) -> str | None:
+        """How the search stands; returns what to tell the person when it has ended."""
+        before, self._search = self._search, search
+        same = (search.episode, search.phase) == (before.episode, before.phase)
+        if same or search.target != self._state.target:
+            return None
+        if search.phase is SearchPhase.FOUND:
+            return self._said(
+                f"I found the {search.target}: it is near x = {search.best_x_m:.1f} m, y = {search.best_y_m:.1f} m, "
+                f"and I am looking at it. It took {search.step} steps and {search.path_length_m:.1f} m."
+            )
+        if search.phase is SearchPhase.NOT_FOUND:
+            return self._said(f"I did not find the {search.target}: {search.message}.")
+        if search.phase is SearchPhase.DOCKING:
+            return self._said(f"I think I see the {search.target}; I am driving there.")
+        return None
+
+    def adopt(self, search: SearchState) -> None:
+        """Take over a search that goes on already (the dialogue was started again)."""
+        if not self._state.target and search.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING):
+            self._state = DialogueState(target=search.target)
+
+    def hear(self, line: str, robot: Pose2D | None) -> Reaction:
+        """One line of the person; `robot` is where the robot is, if known."""
+        shown = line if len(line) <= SHOWN_CHARS else line[: SHOWN_CHARS - 1] + "…"
+        try:
+            reaction = self._react(read_line(line, self._parameters.max_line_chars), robot)
+        except UnreadableLineError as error:
+            reaction = Reaction(answer=str(error))
+        target = self._state.target if reaction.target is None else reaction.target
+        self._state = DialogueState(target=target, last_heard=shown, last_said=reaction.answer)
+        return reaction
+
+    def _react(self, request: Request, robot: Pose2D | None) -> Reaction:
+        match request.kind:
+            case RequestKind.FIND:
+                return self._find(request.thing)
+            case RequestKind.STOP:
+                return Reaction(answer="I have stopped.", target="")
+            case RequestKind.WHERE:
+                return Reaction(answer=describe_place(robot))
+            case RequestKind.WHY:
+                return Reaction(answer=explain(self._search, self._decision))
+            case RequestKind.THANKS:
+                return Reaction(answer="You are welcome.")
+            case RequestKind.GREETING | RequestKind.HELP:
+                return Reaction(answer=f"Hello. {self._offer()}")
+            case RequestKind.UNKNOWN:
+                if request.thing and matching_class(request.thing, self._names) is not None:
+                    return self._find(request.thing)
+                return Reaction(answer=f"I did not understand that. {self._offer()}")
+
+    def _find(self, thing: str) -> Reaction:
+        if not self._names:
+            return Reaction(answer="I cannot look for anything yet: my detector has not started. Ask me again soon.")
+        name = matching_class(thing, self._names)
+        if name is None:
+            return Reaction(answer=f"I do not know what {_quoted(thing)} looks like. {self._offer()}")
+        return Reaction(answer=f"I am looking for the {name}.", target=name)
+
+    def _offer(self) -> str:
+        if not self._names:
+            return "Ask me to find something, such as: find the mug."
+        return f"I can find: {listed(self._names, self._parameters.max_names)}. Say, for example: find the {self._names[0]}."
+
+    def _said(self, line: str) -> str:
+        self._state = DialogueState(
+            target=self._state.target, last_heard=self._state.last_heard, last_said=line
+        )
+        return line
+
+
+def _quoted(thing: str) -> str:
+    return repr(thing if len(thing) <= SHOWN_CHARS else thing[: SHOWN_CHARS - 1] + "…")

@@ -1,0 +1,1 @@
+"""What the nodes share: base class, parameters, diagnostics, life cycle, start-up of the graph."""

@@ -1,0 +1,350 @@
+"""The base of every node: life cycle, contract, parameters, diagnostics, and callbacks that cannot kill it."""
+
+import traceback
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from typing import Any, ClassVar, Generic, TypeVar
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
+
+from robustnav_msgs_py import contract
+from robustnav_msgs_py.conversions import status_to_message
+from robustnav_msgs_py.conversions.stamps import header
+from robustnav_msgs_py.errors import ContractError, RobustnavError
+from robustnav_msgs_py.values import ERROR, WARN
+from robustnav_nodes.graph import qos
+from robustnav_nodes.graph.health import Health
+from robustnav_nodes.graph.node_parameters import NodeParameters
+from robustnav_nodes.graph.worker import Worker
+
+P = TypeVar("P")
+V = TypeVar("V")
+
+DIAGNOSTICS_PERIOD_S = 1.0
+
+
+def message_class(name: str) -> Any:
+    """The class of a type as ROS writes it: "std_msgs/msg/String", "std_srvs/srv/Trigger"."""
+    package, kind, type_name = name.split("/")
+    return getattr(import_module(f"{package}.{kind}"), type_name)
+
+
+class GraphNode(LifecycleNode, Generic[P]):
+    """A lifecycle node that takes topics, types and QoS from the contract and parameters from a declaration.
+
+    A subclass names its `executable` (its rows in the contract) and its `declaration`, and overrides any of
+    `configure`, `activate`, `deactivate`, `cleanup`. What these raise fails the transition with a log line.
+    Publishers, subscriptions, timers, services and workers made in `configure` are taken down at clean-up.
+
+    Callbacks run in the executor's thread and only while the node is active. A RobustnavError raised there
+    (a bad message) is logged once and shown in /diagnostics; any other exception is logged with its
+    traceback; the node lives on.
+    """
+
+    executable: ClassVar[str]
+    declaration: ClassVar[type]
+
+    def __init__(self, **node_options: Any) -> None:
+        super().__init__(self.executable, enable_logger_service=True, **node_options)
+        self.health = Health(self._log)
+        self._timers_made: list[Timer] = []
+        self._subscriptions_made: list[Subscription] = []
+        self._publishers_made: list[LifecyclePublisher] = []
+        self._services_made: list[Any] = []
+        self._workers: list[Worker] = []
+        self._held: dict[str, deque[Callable[[], None]]] = {}
+        self._waiting_for: list[str] = []
+        self._active = False
+        self.declare_parameter(
+            "autostart",
+            True,
+            ParameterDescriptor(description="configure and activate at start; false where a manager does it"),
+        )
+        self._bound: NodeParameters[P] = NodeParameters(self, self.declaration, self._parameters_changed)
+        self._service_change_state.callback = self._on_change_state
+        self._diagnostics = self.create_publisher(
+            DiagnosticArray, "/diagnostics", qos.offered(contract.topic("/diagnostics").qos)
+        )
+        steady = Clock(clock_type=ClockType.STEADY_TIME)  # diagnostics go on while simulated time stands
+        self.create_timer(DIAGNOSTICS_PERIOD_S, self._publish_diagnostics, clock=steady)
+        for name in self._bound.unknown_overrides():
+            self.health.problem(f"parameter {name}", "there is no such parameter; is it misspelt?")
+
+    # What a subclass overrides.
+
+    def configure(self) -> None:
+        """Make publishers, subscriptions, timers and services; nothing runs yet."""
+
+    def activate(self) -> None:
+        """Start working; publishers are open."""
+
+    def deactivate(self) -> None:
+        """Stop working; publishers are still open, so that a last word can be said."""
+
+    def cleanup(self) -> None:
+        """Give back what `configure` took beyond what the base takes down."""
+
+    def parameters_changed(self) -> None:
+        """Called after a parameter was set while the node runs; `self.parameters` is new."""
+
+    # What a subclass uses.
+
+    @property
+    def parameters(self) -> P:
+        """The parameters as they are now, checked."""
+        return self._bound.values
+
+    @property
+    def autostart(self) -> bool:
+        """Whether the node brings itself up (`ros2 run`) instead of waiting for a manager."""
+        return bool(self.get_parameter("autostart").value)
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the node is in the state `active`."""
+        return self._active
+
+    def now_ns(self) -> int:
+        """ROS time (simulated where `use_sim_time` is set), nanoseconds."""
+        return int(self.get_clock().now().nanoseconds)
+
+    def publisher(self, name: str) -> LifecyclePublisher:
+        """A publisher of a topic that the contract says this node speaks on."""
+        row = contract.topic(name)
+        if row not in contract.spoken_by(self.executable):
+            raise ContractError(f"{self.executable!r} is no speaker of {name!r} in the contract")
+        made = self.create_lifecycle_publisher(
+            message_class(row.type),
+            name,
+            qos.offered(row.qos),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+        self._publishers_made.append(made)
+        return made
+
+    def subscribe(self, name: str, read: Callable[[Any], V], use: Callable[[V], None]) -> None:
+        """Hear a topic of the contract: `read` makes the value (a conversion), `use` takes it.
+
+        Latched messages that come before the node is active are held until it is; others are dropped.
+        """
+        row = contract.topic(name)
+        if row not in contract.heard_by(self.executable):
+            raise ContractError(f"{self.executable!r} is no listener of {name!r} in the contract")
+        self._waiting_for.append(name)
+
+        def hear(message: Any) -> None:
+            if name in self._waiting_for:
+                self._waiting_for.remove(name)
+            use(read(message))
+
+        def hear_or_hold(message: Any) -> None:
+            if self._active:
+                self._guard(name, hear, message)
+            elif row.qos.latched:
+                held = self._held.setdefault(name, deque(maxlen=row.qos.depth))
+                held.append(partial(self._guard, name, hear, message))
+
+        self._subscriptions_made.append(
+            self.create_subscription(
+                message_class(row.type),
+                name,
+                hear_or_hold,
+                qos.heard(row.qos),
+                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            )
+        )
+
+    def serve(self, name: str, answer: Callable[[Any, Any], Any]) -> None:
+        """Offer a service of the contract; `answer(request, response)` returns the response.
+
+        When it raises a RobustnavError, the response's `success` is False and its `message` the sentence
+        (where it has these fields).
+        """
+        row = contract.service(name, self.executable)
+
+        def respond(request: Any, response: Any) -> Any:
+            if not self._active:
+                self._refuse(response, f"{self.executable} is not active")
+                return response
+            try:
+                return answer(request, response)
+            except Exception as error:
+                own = not isinstance(error, RobustnavError)
+                self._refuse(response, "the node met an error of its own; its log has it" if own else str(error))
+                self._report(name, error)
+            return response
+
+        self._services_made.append(self.create_service(message_class(row.type), name, respond))
+
+    def every(self, period_s: float, work: Callable[[], None], *, steady: bool = False) -> None:
+        """Call `work` each `period_s` seconds of ROS time (or of wall time where `steady`)."""
+        clock = Clock(clock_type=ClockType.STEADY_TIME) if steady else self.get_clock()
+        self._timers_made.append(
+            self.create_timer(period_s, partial(self._guard, f"timer {work.__name__}", work), clock=clock)
+        )
+
+    def worker(self, name: str, failed: Callable[[], None] = lambda: None) -> Worker:
+        """A thread for long work, whose results come back to the executor's thread.
+
+        A job that raises is reported like a callback; then `failed` is called.
+        """
+
+        def report(error: BaseException) -> None:
+            self._report(name, error)
+            failed()
+
+        made = Worker(self.call_soon, report)
+        self._workers.append(made)
+        return made
+
+    def call_soon(self, work: Callable[[], None]) -> None:
+        """Run `work` in the executor's thread; may be called from any thread."""
+        executor = self.executor
+        if executor is not None:
+            executor.create_task(partial(self._guard, "worker", work))
+
+    # Life cycle.
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Run `configure`."""
+        return self._transition("configure", self.configure, lambda: super(GraphNode, self).on_configure(state))
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Open the publishers, then run `activate`."""
+        opened = super().on_activate(state)
+        self._active = True
+        result = self._transition("activate", self.activate, lambda: opened)
+        self._active = result == TransitionCallbackReturn.SUCCESS
+        if self._active:
+            self.get_logger().info(f"{self.executable} is active")
+            for hear in [hear for held in self._held.values() for hear in held]:
+                hear()
+            self._held.clear()
+        return result
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Run `deactivate`, then close the publishers."""
+        result = self._transition("deactivate", self.deactivate, lambda: TransitionCallbackReturn.SUCCESS)
+        self._active = False
+        super().on_deactivate(state)
+        return result
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Run `cleanup`, then take down what `configure` made."""
+        result = self._transition("clean up", self.cleanup, lambda: TransitionCallbackReturn.SUCCESS)
+        self._take_down()
+        return result
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Deactivate and clean up, from wherever the node is."""
+        if self._active:
+            self.on_deactivate(state)
+        return self.on_cleanup(state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Take everything down; the node can be configured again."""
+        self._active = False
+        self._take_down()
+        return TransitionCallbackReturn.SUCCESS
+
+    def _transition(
+        self, name: str, work: Callable[[], None], after: Callable[[], TransitionCallbackReturn]
+    ) -> TransitionCallbackReturn:
+        try:
+            work()
+            return after()
+        except Exception as error:  # rclpy would swallow it and go to on_error without a word
+            self._report(f"cannot {name}", error, level=ERROR)
+            if name == "configure":
+                self._take_down()
+            return TransitionCallbackReturn.FAILURE
+
+    def _take_down(self) -> None:
+        for worker in self._workers:
+            worker.close()
+        for timer in self._timers_made:
+            self.destroy_timer(timer)
+        for subscription in self._subscriptions_made:
+            self.destroy_subscription(subscription)
+        for service in self._services_made:
+            self.destroy_service(service)
+        for publisher in self._publishers_made:
+            self.destroy_lifecycle_publisher(publisher)
+        for made in (
+            self._workers,
+            self._timers_made,
+            self._subscriptions_made,
+            self._services_made,
+            self._publishers_made,
+            self._waiting_for,
+            self._held,
+        ):
+            made.clear()
+
+    def _on_change_state(self, request: Any, response: Any) -> Any:
+        # rclpy lets an impossible transition raise out of the executor, which ends the node without a reply
+        try:
+            return self._LifecycleNodeMixin__on_change_state(request, response)  # type: ignore[attr-defined]
+        except rclpy_implementation.RCLError as error:
+            state = self._state_machine.current_state[1]
+            wanted = request.transition.label or request.transition.id
+            self.health.problem("life cycle", f"no transition {wanted!r} from state {state!r}: {error}")
+            response.success = False
+            return response
+
+    @property
+    def state_id(self) -> int:
+        """The state of the life cycle, a constant of lifecycle_msgs/State."""
+        return int(self._state_machine.current_state[0])
+
+    # Callbacks that cannot kill the node.
+
+    def _guard(self, where: str, work: Callable[..., None], *arguments: Any) -> None:
+        if not self._active:
+            return
+        try:
+            work(*arguments)
+        except Exception as error:
+            self._report(where, error)
+
+    def _report(self, where: str, error: BaseException, level: int = WARN) -> None:
+        if isinstance(error, RobustnavError):
+            self.health.problem(where, str(error), level)
+        else:
+            trace = "\n" + "".join(traceback.format_exception(error))
+            self.health.problem(where, f"{type(error).__name__}: {error}", ERROR, detail=trace)
+
+    def _parameters_changed(self, _values: P) -> None:
+        try:
+            self.parameters_changed()
+        except Exception as error:
+            self._report("parameters", error)
+
+    def _publish_diagnostics(self) -> None:
+        waiting = self._waiting_for if self._active else []
+        status = self.health.status(self.get_fully_qualified_name(), waiting)
+        message = DiagnosticArray(header=header(self.now_ns(), ""), status=[status_to_message(status)])
+        self._diagnostics.publish(message)
+
+    def _log(self, level: int, sentence: str) -> None:
+        logger = self.get_logger()
+        # rclpy ties a severity to each calling line, so each level has a line of its own
+        if level == ERROR:
+            logger.error(sentence)
+        else:
+            logger.warning(sentence)
+
+    @staticmethod
+    def _refuse(response: Any, sentence: str) -> None:
+        if hasattr(response, "success"):
+            response.success, response.message = False, sentence

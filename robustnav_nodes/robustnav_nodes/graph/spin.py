@@ -1,0 +1,112 @@
+"""Run nodes in this process until they are told to stop, and leave cleanly."""
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+import rclpy
+from lifecycle_msgs.msg import State
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
+from rclpy.signals import SignalHandlerOptions
+
+from robustnav_msgs_py.errors import BadParameterError, RobustnavError
+from robustnav_nodes.graph.environment import prepare_environment
+from robustnav_nodes.graph.node import GraphNode
+
+STOP_SIGNALS = {signal.SIGINT, signal.SIGTERM}
+# Work from other threads wakes the executor; the period only bounds how long a lost wake-up can last.
+SPIN_PERIOD_S = 1.0
+
+
+class Spinner:
+    """Spins an EventsExecutor until `stop` is called, from any thread.
+
+    The executor's own `spin()` burns a core, so it is driven by `spin_once`; see rclpy's
+    EventsExecutor. `stop` goes through a task, the one thing that makes `spin_once` return at once.
+    """
+
+    def __init__(self, executor: Executor) -> None:
+        self.executor = executor
+        self._stopped = threading.Event()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether `stop` was called."""
+        return self._stopped.is_set()
+
+    def stop(self) -> None:
+        """Make `spin` return soon."""
+        self._stopped.set()
+        self.executor.create_task(lambda: None)
+
+    def spin(self) -> None:
+        """Run callbacks until `stop`."""
+        while not self._stopped.is_set() and rclpy.ok():
+            self.executor.spin_once(timeout_sec=SPIN_PERIOD_S)
+
+    def spin_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        """Run callbacks until `condition` holds (True), or the time is over or `stop` was called (False)."""
+        deadline_s = time.monotonic() + timeout_s
+        while not condition():
+            left_s = deadline_s - time.monotonic()
+            if left_s <= 0.0 or self._stopped.is_set() or not rclpy.ok():
+                return False
+            self.executor.spin_once(timeout_sec=min(left_s, SPIN_PERIOD_S))
+        return True
+
+
+def stop_on_signals(stop: Callable[[], None]) -> None:
+    """Call `stop`, from a thread of its own, when SIGINT or SIGTERM comes.
+
+    Python runs its signal handlers between bytecodes of the main thread, which may wait in C++ for long;
+    the wake-up descriptor is written at once, whatever thread the system delivers the signal to.
+    """
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    for number in STOP_SIGNALS:
+        signal.signal(number, lambda *_: None)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+
+    def wait() -> None:
+        while os.read(reader, 1):
+            stop()
+
+    threading.Thread(target=wait, daemon=True, name="signals").start()
+
+
+def run_nodes(factories: Sequence[Callable[[], GraphNode]], argv: Sequence[str] | None = None) -> int:
+    """Run one or several nodes in one executor until SIGINT or SIGTERM; returns the exit code.
+
+    The nodes that were not told otherwise (`autostart`) are configured and activated; at the end they are
+    shut down in reverse order, so that each says its last word while the others still listen.
+    """
+    prepare_environment()
+    rclpy.init(args=list(argv) if argv is not None else None, signal_handler_options=SignalHandlerOptions.NO)
+    spinner = Spinner(EventsExecutor())
+
+    stop_on_signals(spinner.stop)
+    nodes: list[GraphNode] = []
+    try:
+        for make in factories:
+            nodes.append(make())
+            spinner.executor.add_node(nodes[-1])
+        for node in nodes:
+            if node.autostart:
+                node.trigger_configure()
+                if node.state_id == State.PRIMARY_STATE_INACTIVE:
+                    node.trigger_activate()
+        spinner.spin()
+        return 0
+    except RobustnavError as error:
+        print(f"robustnav: {error}", file=sys.stderr)
+        return 2 if isinstance(error, BadParameterError) else 1
+    finally:
+        for node in reversed(nodes):
+            if node.state_id != State.PRIMARY_STATE_FINALIZED:
+                node.trigger_shutdown()
+            node.destroy_node()
+        rclpy.try_shutdown()

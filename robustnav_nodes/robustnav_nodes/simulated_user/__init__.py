@@ -1,0 +1,1 @@
+"""A simulated person: asks for an object, waits, thanks."""

@@ -1,0 +1,1 @@
+"""A simulated home and robot in PyBullet; to the rest of the graph it is a robot."""

@@ -1,0 +1,298 @@
+"""A home as data: rooms, doors, walls, furniture and the small objects on it, all in the `map` frame.
+
+Rectangles on the floor are `Rect`s; a piece of furniture stands turned by a quarter turn or none, so that
+its footprint is one. Everything is frozen: a home does not change once it is made.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from robustnav_msgs_py.errors import BadSceneError
+from robustnav_msgs_py.values import Float64, ObjectInstance, Pose2D
+from sim_bridge.shapes import Colour, Part, Size, extent
+
+WALL_THICKNESS_M = 0.10
+WALL_HEIGHT_M = 2.50
+DOOR_HEIGHT_M = 2.05
+# What is higher up than this does not touch a robot that carries its camera at 1.1 m.
+ROBOT_HEIGHT_M = 1.30
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rect:
+    """A rectangle on the floor, aligned with the axes of `map`, in metres."""
+
+    x_min_m: float
+    y_min_m: float
+    x_max_m: float
+    y_max_m: float
+
+    def __post_init__(self) -> None:
+        if not (self.x_min_m < self.x_max_m and self.y_min_m < self.y_max_m):
+            raise BadSceneError(f"a rectangle needs an extent: {self!r}")
+
+    @property
+    def width_m(self) -> float:
+        """Extent along x."""
+        return self.x_max_m - self.x_min_m
+
+    @property
+    def depth_m(self) -> float:
+        """Extent along y."""
+        return self.y_max_m - self.y_min_m
+
+    @property
+    def area_m2(self) -> float:
+        """Area."""
+        return self.width_m * self.depth_m
+
+    @property
+    def centre_m(self) -> tuple[float, float]:
+        """The middle: x, y."""
+        return (self.x_min_m + self.x_max_m) / 2.0, (self.y_min_m + self.y_max_m) / 2.0
+
+    def grown(self, margin_m: float) -> "Rect":
+        """The rectangle with `margin_m` added on every side (taken away where negative)."""
+        return Rect(
+            x_min_m=self.x_min_m - margin_m,
+            y_min_m=self.y_min_m - margin_m,
+            x_max_m=self.x_max_m + margin_m,
+            y_max_m=self.y_max_m + margin_m,
+        )
+
+    def overlaps(self, other: "Rect", tolerance_m: float = 1e-6) -> bool:
+        """Whether the two share more than an edge."""
+        return (
+            self.x_min_m < other.x_max_m - tolerance_m
+            and other.x_min_m < self.x_max_m - tolerance_m
+            and self.y_min_m < other.y_max_m - tolerance_m
+            and other.y_min_m < self.y_max_m - tolerance_m
+        )
+
+    def contains(self, other: "Rect", tolerance_m: float = 1e-6) -> bool:
+        """Whether `other` lies wholly inside."""
+        return (
+            self.x_min_m <= other.x_min_m + tolerance_m
+            and other.x_max_m <= self.x_max_m + tolerance_m
+            and self.y_min_m <= other.y_min_m + tolerance_m
+            and other.y_max_m <= self.y_max_m + tolerance_m
+        )
+
+    def holds(self, x_m: float, y_m: float) -> bool:
+        """Whether the point lies inside or on the edge."""
+        return self.x_min_m <= x_m <= self.x_max_m and self.y_min_m <= y_m <= self.y_max_m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Room:
+    """One room; `inside` is its floor between the walls."""
+
+    name: str
+    kind: str
+    inside: Rect
+    floor_colour: Colour
+    wall_colour: Colour
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Door:
+    """An opening without a leaf; `opening` reaches from one side of the wall to the other."""
+
+    rooms: tuple[str, str]
+    opening: Rect
+    along_x: bool
+
+    @property
+    def width_m(self) -> float:
+        """How much room there is to drive through."""
+        return self.opening.width_m if self.along_x else self.opening.depth_m
+
+
+class Side(StrEnum):
+    """The sides of a rectangle on the floor."""
+
+    SOUTH = "south"
+    NORTH = "north"
+    WEST = "west"
+    EAST = "east"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wall:
+    """A straight piece of wall, or the lintel above a door.
+
+    `hidden` is the side that leans on another piece of wall, which nobody ever sees.
+    """
+
+    base: Rect
+    z_min_m: float
+    z_max_m: float
+    colour: Colour
+    hidden: Side
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surface:
+    """Where objects can stand on a piece of furniture: a rectangle in its own frame, at a height."""
+
+    area: Rect
+    height_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Furniture:
+    """A piece of furniture. Its own frame has x out of its front, y to its left, origin on the floor.
+
+    `surfaces` is empty where nothing stands on it; `tall` furniture hides what is behind it.
+    """
+
+    name: str
+    kind: str
+    room: str
+    x_m: float
+    y_m: float
+    quarter_turns: int
+    depth_m: float
+    width_m: float
+    height_m: float
+    tall: bool
+    surfaces: tuple[Surface, ...]
+    parts: tuple[Part, ...]
+
+    @property
+    def yaw_rad(self) -> float:
+        """Heading of its front."""
+        return math.remainder(self.quarter_turns * math.pi / 2.0, math.tau)
+
+    @property
+    def carries(self) -> bool:
+        """Whether objects stand on it, where a robot can see them."""
+        return bool(self.surfaces) and not self.tall
+
+    @property
+    def footprint(self) -> Rect:
+        """The floor that it covers."""
+        return self.in_map(
+            Rect(
+                x_min_m=-self.depth_m / 2.0,
+                y_min_m=-self.width_m / 2.0,
+                x_max_m=self.depth_m / 2.0,
+                y_max_m=self.width_m / 2.0,
+            )
+        )
+
+    def in_map(self, area: Rect) -> Rect:
+        """A rectangle of its own frame, moved to `map`."""
+        xs, ys = zip(
+            self.point_in_map(area.x_min_m, area.y_min_m),
+            self.point_in_map(area.x_max_m, area.y_max_m),
+            strict=True,
+        )
+        return Rect(x_min_m=min(xs), y_min_m=min(ys), x_max_m=max(xs), y_max_m=max(ys))
+
+    def point_in_map(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """A point of its own frame, moved to `map`; quarter turns keep the coordinates exact."""
+        cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[self.quarter_turns % 4]
+        return self.x_m + cos * x_m - sin * y_m, self.y_m + sin * x_m + cos * y_m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmallObject:
+    """An object that a person may ask for. `z_m` is where its bottom stands; origin below its middle."""
+
+    instance: int
+    label: str
+    colour_name: str
+    room: str
+    furniture: str
+    x_m: float
+    y_m: float
+    z_m: float
+    yaw_rad: float
+    parts: tuple[Part, ...]
+
+    @property
+    def size_m(self) -> Size:
+        """Extent along its own axes."""
+        low, high = extent(self.parts)
+        return high[0] - low[0], high[1] - low[1], high[2] - low[2]
+
+    @property
+    def centre_m(self) -> Size:
+        """The middle of the box around it, in `map`."""
+        low, high = extent(self.parts)
+        x, y = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return (
+            self.x_m + cos * x - sin * y,
+            self.y_m + sin * x + cos * y,
+            self.z_m + (low[2] + high[2]) / 2.0,
+        )
+
+    @property
+    def footprint(self) -> Rect:
+        """The rectangle around it, seen from above."""
+        corners = self.corners_m()
+        return Rect(
+            x_min_m=float(corners[:, 0].min()),
+            y_min_m=float(corners[:, 1].min()),
+            x_max_m=float(corners[:, 0].max()),
+            y_max_m=float(corners[:, 1].max()),
+        )
+
+    def corners_m(self) -> Float64:
+        """The eight corners of the box around it, [8, 3] in `map`."""
+        low, high = extent(self.parts)
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return np.array(
+            [
+                (self.x_m + cos * x - sin * y, self.y_m + sin * x + cos * y, self.z_m + z)
+                for x in (low[0], high[0])
+                for y in (low[1], high[1])
+                for z in (low[2], high[2])
+            ]
+        )
+
+    def as_truth(self) -> ObjectInstance:
+        """The object as ground truth travels."""
+        x, y, z = self.centre_m
+        return ObjectInstance(
+            instance=self.instance,
+            label=self.label,
+            x_m=x,
+            y_m=y,
+            z_m=z,
+            yaw_rad=self.yaw_rad,
+            size_m=self.size_m,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Home:
+    """A whole home. `bounds` reaches to the outer faces of the outer walls; `start` is the robot's.
+
+    `labels` are the class names of the catalogue, in the order of their numbers: the same in every home.
+    """
+
+    name: str
+    seed: int
+    bounds: Rect
+    rooms: tuple[Room, ...]
+    doors: tuple[Door, ...]
+    walls: tuple[Wall, ...]
+    furniture: tuple[Furniture, ...]
+    objects: tuple[SmallObject, ...]
+    labels: tuple[str, ...]
+    start: Pose2D
+
+    def room_at(self, x_m: float, y_m: float) -> Room | None:
+        """The room whose floor holds the point; None in a wall, a doorway and outside."""
+        return next((room for room in self.rooms if room.inside.holds(x_m, y_m)), None)
+
+    def obstacles(self) -> tuple[Rect, ...]:
+        """The floor that walls and furniture cover as far up as the robot reaches."""
+        walls = tuple(wall.base for wall in self.walls if wall.z_min_m < ROBOT_HEIGHT_M)
+        return walls + tuple(piece.footprint for piece in self.furniture)

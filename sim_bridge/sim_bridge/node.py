@@ -1,0 +1,226 @@
+"""The simulator as a node: to the rest of the graph it is a robot in a home.
+
+| hears | |
+|---|---|
+| `cmd_vel` | drives; the robot brakes when it stops coming; ends a goal |
+| `goal_pose` | drives there around furniture, or refuses with a sentence in /diagnostics |
+| `initialpose` | puts the robot there |
+
+| says | |
+|---|---|
+| `/clock` | every step; the node itself runs on wall time |
+| `odom`, `scan` | at their rates |
+| `camera/image_raw`, `camera/depth/image_raw` | at the camera's rate while somebody listens |
+| `camera/camera_info` | at the camera's rate, with the images' stamps |
+| `truth/visible` | at the camera's rate, with the images' stamps, while somebody listens |
+| `map`, `search/candidates` | once, latched |
+| `truth/objects`, `truth/labels`, `truth/episode` | once, latched |
+
+Services: `~/reset` (back to the start; time goes on), `~/pause`, `~/step` (one period while paused).
+"""
+
+import dataclasses
+import time
+from typing import TYPE_CHECKING, Any
+
+from robustnav_msgs_py.conversions import (
+    camera_to_message,
+    clock_to_message,
+    color_to_message,
+    depth_to_message,
+    labels_to_message,
+    map_to_message,
+    objects_to_message,
+    odometry_to_message,
+    pose_from_message,
+    record_to_message,
+    scan_to_message,
+    velocity_from_message,
+    visible_to_message,
+)
+from robustnav_msgs_py.errors import BadMessageError, BadSceneError
+from robustnav_msgs_py.values import Pose2D, StampedPose, Velocity
+from robustnav_nodes.graph.node import GraphNode
+from robustnav_nodes.graph.spin import run_nodes
+from sim_bridge.floor_plan import candidate_mask, floor_plan
+from sim_bridge.pace import Pace
+from sim_bridge.parameters import SimParameters
+
+if TYPE_CHECKING:
+    from sim_bridge.simulation import Due, Simulation
+
+# `odom` does not drift here, so a pose in it is a pose in `map`.
+KNOWN_FRAMES = ("map", "odom")
+# How long the executor may be kept busy before other callbacks get their turn; one image may take longer.
+TURN_S = 0.01
+# Wall time that is made up for after the executor was held up; more is dropped.
+MOST_BEHIND_S = 0.2
+SHORTEST_TIMER_S = 0.002
+
+
+class SimBridge(GraphNode[SimParameters]):
+    """The simulator's node. The executor's thread owns the simulation."""
+
+    executable = "sim_bridge"
+    declaration = SimParameters
+
+    _simulation: "Simulation | None" = None
+
+    def configure(self) -> None:
+        """Build the home and everything that publishes it."""
+        try:
+            from sim_bridge.simulation import Simulation
+        except ImportError as error:
+            raise BadSceneError(
+                f"the simulator needs PyBullet ({error}): pip install 'robustnav[sim]'"
+            ) from error
+        parameters = self.parameters
+        self._simulation = simulation = Simulation(parameters)
+        self._paused = False
+        self._told_problem = ""
+        self._pace = Pace(simulation.period_s, MOST_BEHIND_S)
+
+        self._clock_out = self.publisher("/clock")
+        self._odom_out = self.publisher("odom")
+        self._scan_out = self.publisher("scan")
+        self._color_out = self.publisher("camera/image_raw")
+        self._depth_out = self.publisher("camera/depth/image_raw")
+        self._camera_out = self.publisher("camera/camera_info")
+        self._visible_out = self.publisher("truth/visible")
+        self._map_out = self.publisher("map")
+        self._candidates_out = self.publisher("search/candidates")
+        self._objects_out = self.publisher("truth/objects")
+        self._labels_out = self.publisher("truth/labels")
+        self._episode_out = self.publisher("truth/episode")
+
+        self.subscribe("cmd_vel", velocity_from_message, self._command)
+        self.subscribe("goal_pose", pose_from_message, self._go_to)
+        self.subscribe("initialpose", pose_from_message, self._place)
+        self.serve("~/reset", self._reset)
+        self.serve("~/pause", self._pause)
+        self.serve("~/step", self._step_once)
+        period_s = simulation.period_s / parameters.real_time_factor
+        self.every(max(period_s, SHORTEST_TIMER_S), self._run, steady=True)
+
+    def activate(self) -> None:
+        """Publish what does not change, and let time begin."""
+        home, now_ns = self._running.home, self._running.now_ns
+        self._clock_out.publish(clock_to_message(now_ns))
+        self._map_out.publish(map_to_message(floor_plan(home, now_ns)))
+        self._candidates_out.publish(map_to_message(candidate_mask(home, now_ns)))
+        self._objects_out.publish(objects_to_message([item.as_truth() for item in home.objects], now_ns))
+        self._labels_out.publish(labels_to_message(home.labels))
+        self._episode_out.publish(record_to_message(self._running.episode(), summary=home.name))
+        self._pace.restart()
+
+    def deactivate(self) -> None:
+        """Forget command and goal; time stands while the node is inactive."""
+        self._running.stop()
+
+    def cleanup(self) -> None:
+        """Close the world."""
+        if self._simulation is not None:
+            self._simulation.close()
+            self._simulation = None
+
+    def parameters_changed(self) -> None:
+        """The pace changes at once, everything else with the next configure."""
+        if self._simulation is None:
+            return
+        used = dataclasses.replace(
+            self._simulation.parameters, real_time_factor=self.parameters.real_time_factor
+        )
+        if used != self.parameters:
+            self.health.problem(
+                "parameters", "all but real_time_factor take effect when the node is configured again"
+            )
+
+    @property
+    def _running(self) -> "Simulation":
+        if self._simulation is None:
+            raise BadSceneError("there is no home yet: configure the node first")
+        return self._simulation
+
+    def _command(self, velocity: Velocity) -> None:
+        self._running.command(velocity)
+
+    def _go_to(self, goal: StampedPose) -> None:
+        self._running.go_to(_in_map(goal))
+
+    def _place(self, pose: StampedPose) -> None:
+        self._running.place(_in_map(pose))
+
+    def _reset(self, _request: Any, response: Any) -> Any:
+        self._running.reset()
+        response.success, response.message = True, "the robot stands at its start"
+        return response
+
+    def _pause(self, request: Any, response: Any) -> Any:
+        self._paused = bool(request.data)
+        self._pace.restart()
+        response.success, response.message = True, "time stands" if self._paused else "time goes on"
+        return response
+
+    def _step_once(self, _request: Any, response: Any) -> Any:
+        if not self._paused:
+            response.success, response.message = (
+                False,
+                "time is not paused: call ~/pause with data: true first",
+            )
+            return response
+        self._step()
+        response.success, response.message = True, f"it is {self._running.now_ns} ns"
+        return response
+
+    def _run(self) -> None:
+        """Make the steps that wall time asks for, as many as fit into one turn."""
+        if self._paused:
+            return
+        began_s = time.monotonic()
+        for _ in range(self._pace.due(began_s, self.parameters.real_time_factor)):
+            self._step()
+            self._pace.done()
+            if time.monotonic() - began_s > TURN_S:
+                break
+
+    def _step(self) -> None:
+        due = self._running.step()
+        self._clock_out.publish(clock_to_message(self._running.now_ns))
+        self._publish(due)
+        problem = self._running.follower.problem
+        if problem and problem != self._told_problem:
+            self.health.problem("goal_pose", problem)
+        self._told_problem = problem
+
+    def _publish(self, due: "Due") -> None:
+        simulation = self._running
+        if due.odom:
+            self._odom_out.publish(odometry_to_message(simulation.odometry()))
+        if due.scan and self._scan_out.get_subscription_count():
+            self._scan_out.publish(scan_to_message(simulation.laser_scan()))
+        if not due.camera:
+            return
+        if self._visible_out.get_subscription_count():
+            self._visible_out.publish(visible_to_message(simulation.visible_objects()))
+        self._camera_out.publish(camera_to_message(simulation.camera_model()))
+        wants_color = self._color_out.get_subscription_count() > 0
+        wants_depth = self._depth_out.get_subscription_count() > 0
+        if wants_color or wants_depth:
+            frame = simulation.camera_frame()
+            self._color_out.publish(color_to_message(frame.color))
+            self._depth_out.publish(depth_to_message(frame.depth))
+            self.health.count("images rendered")
+
+
+def _in_map(stamped: StampedPose) -> Pose2D:
+    """The pose in `map`; refused in frames that the simulator does not know."""
+    if stamped.frame_id not in KNOWN_FRAMES:
+        raise BadMessageError(
+            f"a pose is in frame {stamped.frame_id!r}; the simulator knows {' and '.join(KNOWN_FRAMES)}"
+        )
+    return stamped.pose
+
+
+def main() -> int:
+    """Run the simulator until it is told to stop."""
+    return run_nodes([SimBridge])

@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.values import OccupancyMap, Pose2D
+from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.belief.tracker import BeliefTracker
+from robustnav_nodes.belief.view_gate import Verdict
+from robustnav_nodes.search_space.camera_view import build_camera_view
+
+PARAMETERS = BeliefParameters(camera_forward_m=0.0, detection_sigma_m=0.5, detection_floor=0.1)
+SILENT = np.zeros((0, 3))
+ORIGIN = Pose2D(x_m=0.0, y_m=0.0)
+
+
+@pytest.fixture
+def tracker() -> BeliefTracker:
+    """A floor of 6 m x 2 m with four candidates along y = 1.1 m, at x = 1.1, 2.1, 3.1 and 5.1 m."""
+    mask = np.zeros((10, 30), dtype=np.int8)
+    mask[5, [5, 10, 15, 25]] = 100
+    view = build_camera_view(
+        OccupancyMap(cells=np.zeros((40, 120), dtype=np.int8), resolution_m=0.05, origin=ORIGIN),
+        OccupancyMap(cells=mask, resolution_m=0.2, origin=ORIGIN),
+        PARAMETERS,
+    )
+    return BeliefTracker(
+        view=view, statistics=ClassStatistics(precision=0.75, recall=0.75), parameters=PARAMETERS
+    )
+
+
+WEST = Pose2D(x_m=0.3, y_m=1.1)  # looks east; sees the first three
+
+
+def test_a_silent_view_by_hand(tracker):
+    """F1 = 0.75: three in view weigh 0.25, one out of view 0.75."""
+    assert tracker.observe(WEST, SILENT) is Verdict.COUNTED
+    np.testing.assert_allclose(tracker.belief.probability, np.array([1, 1, 1, 3]) / 6)
+
+
+def test_a_detection_by_hand(tracker):
+    """At the second: 1 there, exp(-2) on the neighbours 1 m away, the floor 0.1 out of view."""
+    tracker.observe(WEST, np.array([[2.1, 1.1, 0.7]]))
+    weights = np.array([np.exp(-2.0), 1.0, np.exp(-2.0), 0.1])
+    np.testing.assert_allclose(tracker.belief.probability, weights / weights.sum())
+
+
+def test_looking_twice_from_one_pose_tells_nothing_new(tracker):
+    tracker.observe(WEST, SILENT)
+    before = tracker.belief
+    assert tracker.observe(WEST, SILENT) is Verdict.SEEN_BEFORE
+    assert tracker.observe(WEST, np.array([[2.1, 1.1]])) is Verdict.SEEN_BEFORE
+    assert tracker.belief is before
+
+
+def test_a_view_while_driving_does_not_count(tracker):
+    before = tracker.belief
+    assert tracker.observe(WEST, SILENT, linear_m_s=0.3) is Verdict.MOVING
+    assert tracker.belief is before
+
+
+def test_a_view_of_nothing_changes_nothing(tracker):
+    tracker.observe(Pose2D(x_m=0.3, y_m=1.1, yaw_rad=np.pi), SILENT)
+    np.testing.assert_allclose(tracker.belief.probability, 0.25)
+
+
+@pytest.mark.parametrize("places", [np.array([[np.nan, 0.0]]), np.array([[np.inf, 0.0, 0.0]]), np.zeros(3)])
+def test_places_that_make_no_sense_are_refused_and_do_not_use_up_the_view(tracker, places):
+    with pytest.raises(BadMessageError, match="detected place"):
+        tracker.observe(WEST, places)
+    assert tracker.observe(WEST, SILENT) is Verdict.COUNTED
+
+
+def test_one_detection_does_not_end_a_search_that_has_only_begun(tracker):
+    """With floor >= 1 / confidence no probability gets past confidence / k from a uniform belief."""
+    rng = np.random.default_rng(1)
+    masked = np.where(rng.random((10, 30)) < 0.3, 100, 0).astype(np.int8)
+    view = build_camera_view(
+        OccupancyMap(cells=np.zeros((40, 120), dtype=np.int8), resolution_m=0.05, origin=ORIGIN),
+        OccupancyMap(cells=masked, resolution_m=0.2, origin=ORIGIN),
+        PARAMETERS,
+    )
+    statistics = ClassStatistics()
+    for x_m in (1.0, 2.0, 3.0):
+        one = BeliefTracker(view=view, statistics=statistics, parameters=PARAMETERS)
+        one.observe(WEST, np.array([[x_m, 1.0]]))
+        assert one.belief.probability.max() < 10.0 / len(view.candidates)

@@ -1,0 +1,60 @@
+"""One ROS domain per test run, and a check that nothing is left running."""
+
+import os
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+# Fast DDS maps a domain to UDP ports from 7400 + 250 * domain; below 128 they stay under Linux' ephemeral ports.
+DOMAINS = range(20, 100)
+
+
+def _is_free(domain: int) -> bool:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind(("127.0.0.1", 7400 + 250 * domain + 10))
+        except OSError:
+            return False
+    return True
+
+
+def _free_domain() -> int:
+    order = [DOMAINS[(os.getpid() + offset) % len(DOMAINS)] for offset in range(len(DOMAINS))]
+    return next(domain for domain in order if _is_free(domain))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ros_domain(tmp_path_factory: pytest.TempPathFactory) -> int:
+    """A domain of our own, on this machine only; logs go to a temporary folder."""
+    domain = _free_domain()
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
+    os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("ros_log"))
+    from robustnav_nodes.graph.environment import prepare_environment
+
+    prepare_environment(local=True)
+    return domain
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_left_behind(ros_domain: int) -> Iterator[None]:
+    """No process in our domain outlives the run; segments of those that were killed on purpose are cleaned."""
+    yield
+    from robustnav_nodes.graph.shared_memory import clean_shared_memory
+
+    left = [process for process in _processes_in(ros_domain) if process != os.getpid()]
+    clean_shared_memory()
+    assert not left, f"processes {left} are still running"
+
+
+def _processes_in(domain: int) -> list[int]:
+    found = []
+    for process in Path("/proc").iterdir():
+        try:
+            variables = (process / "environ").read_bytes().split(b"\0") if process.name.isdigit() else []
+        except OSError:  # it has just ended, or is somebody else's
+            continue
+        if f"ROS_DOMAIN_ID={domain}".encode() in variables:
+            found.append(int(process.name))
+    return found

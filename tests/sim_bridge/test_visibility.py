@@ -1,0 +1,99 @@
+"""The observer, who only sends rays, lists what the rendered picture shows."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
+from robustnav_msgs_py.values import Pose2D
+from sim_bridge.camera import Camera
+from sim_bridge.simulation import Simulation
+from sim_bridge.visibility import RAYS_PER_AXIS
+from sim_bridge.world import NOTHING, World
+
+FreePoses = Callable[..., list[Pose2D]]
+
+
+def instances(simulation: Simulation, bodies: NDArray[np.int32]) -> NDArray[np.int64]:
+    """The object at each pixel, -1 where none."""
+    shown = np.full(bodies.shape, NOTHING, dtype=np.int64)
+    for body, instance in simulation._world.instance_of.items():
+        shown[bodies == body] = instance
+    return shown
+
+
+def test_boxes_agree_with_the_segmentation(simulation: Simulation, free_poses: FreePoses) -> None:
+    worst = []
+    for pose in free_poses(simulation.home, 60, seed=2):
+        truth = simulation._observer.look(pose, 7)
+        shown = instances(simulation, simulation._camera.take(pose, 7).bodies)
+        listed = set(truth.instance.tolist())
+        for instance in set(np.unique(shown).tolist()) - {NOTHING}:
+            rows, columns = np.nonzero(shown == instance)
+            if len(rows) < 4:
+                continue
+            assert instance in listed
+            box = truth.box_px[truth.instance == instance][0]
+            picture = np.array((columns.min(), rows.min(), columns.max() + 1, rows.max() + 1))
+            extent_px = max(picture[2] - picture[0], picture[3] - picture[1])
+            worst.append(np.abs(box - picture).max() / (1.0 + extent_px / RAYS_PER_AXIS))
+    assert len(worst) > 20
+    assert np.percentile(worst, 90) <= 1.5
+    assert max(worst) <= 4.0
+
+
+def test_fractions_agree_with_a_picture_of_it_alone(simulation: Simulation, free_poses: FreePoses) -> None:
+    home, camera = simulation.home, simulation._camera
+    errors, partly = [], 0
+    for thing in home.objects[::2]:
+        alone = dataclasses.replace(
+            home, rooms=(), walls=(), furniture=(), objects=(dataclasses.replace(thing, instance=0),)
+        )
+        with World(alone) as world:
+            lonely = Camera(world, camera.model, camera.mount, camera.range_m)
+            for place in free_poses(home, 40, seed=thing.instance):
+                bearing_rad = math.atan2(thing.y_m - place.y_m, thing.x_m - place.x_m)
+                pose = Pose2D(x_m=place.x_m, y_m=place.y_m, yaw_rad=bearing_rad + 0.3)
+                truth = simulation._observer.look(pose, 0)
+                if thing.instance not in truth.instance:
+                    continue
+                covered = (lonely.take(pose, 0).bodies != NOTHING).sum()
+                if covered < 40:
+                    continue
+                shown = instances(simulation, camera.take(pose, 0).bodies)
+                fraction = float(truth.visible_fraction[truth.instance == thing.instance][0])
+                errors.append(abs(fraction - (shown == thing.instance).sum() / covered))
+                partly += 0.1 < fraction < 0.9
+    assert len(errors) > 10
+    assert partly > 0
+    assert max(errors) < 0.12
+
+
+def test_positions_are_centres_in_the_optical_frame(simulation: Simulation, free_poses: FreePoses) -> None:
+    for pose in free_poses(simulation.home, 20, seed=3):
+        truth = simulation._observer.look(pose, 42)
+        assert truth.stamp_ns == 42
+        assert ((truth.visible_fraction > 0.0) & (truth.visible_fraction <= 1.0)).all()
+        for at, instance in enumerate(truth.instance.tolist()):
+            thing = simulation.home.objects[instance]
+            assert simulation.home.labels[truth.label[at]] == thing.label
+            centre = optical_from_base(CameraMount(), base_from_map(pose, np.array([thing.centre_m])))[0]
+            np.testing.assert_allclose(truth.position_m[at], centre, atol=1e-5)
+
+
+def test_every_object_can_be_seen_from_somewhere(simulation: Simulation, free_poses: FreePoses) -> None:
+    seen: set[int] = set()
+    for pose in free_poses(simulation.home, 600, seed=4):
+        truth = simulation._observer.look(pose, 0)
+        seen |= set(truth.instance[truth.visible_fraction > 0.5].tolist())
+    assert seen == {thing.instance for thing in simulation.home.objects}
+
+
+def test_an_empty_view_is_an_empty_list(simulation: Simulation, free_poses: FreePoses) -> None:
+    views = [simulation._observer.look(pose, 0) for pose in free_poses(simulation.home, 60, seed=5)]
+    empty = next(view for view in views if len(view) == 0)
+    assert empty.box_px.shape == (0, 4)
+    assert empty.position_m.shape == (0, 3)
