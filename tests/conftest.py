@@ -4,10 +4,14 @@ import os
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-# Fast DDS maps a domain to UDP ports from 7400 + 250 * domain; below 128 they stay under Linux' ephemeral ports.
+if TYPE_CHECKING:
+    from tests.bench import Bench
+
+# Fast DDS uses UDP ports from 7400 + 250 * domain; these domains stay below Linux' ephemeral ports.
 DOMAINS = range(20, 100)
 
 
@@ -39,7 +43,7 @@ def ros_domain(tmp_path_factory: pytest.TempPathFactory) -> int:
 
 @pytest.fixture(scope="session", autouse=True)
 def nothing_left_behind(ros_domain: int) -> Iterator[None]:
-    """No process in our domain outlives the run; segments of those that were killed on purpose are cleaned."""
+    """No process in our domain outlives the run; segments of those killed on purpose are cleaned."""
     yield
     from robustnav_nodes.graph.shared_memory import clean_shared_memory
 
@@ -58,3 +62,19 @@ def _processes_in(domain: int) -> list[int]:
         if f"ROS_DOMAIN_ID={domain}".encode() in variables:
             found.append(int(process.name))
     return found
+
+
+@pytest.fixture
+def bench() -> Iterator["Bench"]:
+    """A fresh rclpy context's worth of nodes, taken down at the end."""
+    import rclpy
+
+    from tests.bench import Bench
+
+    rclpy.init(args=[])
+    made = Bench()
+    yield made
+    for node in made.nodes:
+        node.destroy_node()
+    made.outside.destroy_node()
+    rclpy.try_shutdown()

@@ -1,6 +1,7 @@
 """metadata.yaml of a bag folder, in the layout of rosbag2 Jazzy (version 9)."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -63,13 +64,17 @@ class BagMetadata:
 
     @property
     def start_ns(self) -> int:
-        """Earliest log time of the bag."""
-        return min(row.start_ns for row in self.files)
+        """Earliest log time of the bag; a file without messages counts only where all are without."""
+        return min(row.start_ns for row in self._telling_files)
 
     @property
     def duration_ns(self) -> int:
         """From the first message to the last."""
-        return max(row.start_ns + row.duration_ns for row in self.files) - self.start_ns
+        return max(row.start_ns + row.duration_ns for row in self._telling_files) - self.start_ns
+
+    @property
+    def _telling_files(self) -> tuple[FileRow, ...]:
+        return tuple(row for row in self.files if row.message_count) or self.files
 
     def as_text(self) -> str:
         """YAML without its root key, as rosbag2 also stores it inside the MCAP file."""
@@ -117,6 +122,16 @@ class BagMetadata:
             "custom_data": {entry.name: entry.text for entry in self.custom} or None,
             "ros_distro": self.ros_distro,
         }
+
+
+def joined(rows: Iterable[TopicRow]) -> tuple[TopicRow, ...]:
+    """One row for each topic and type, in order of appearance: counts are summed, the rest is the first's."""
+    found: dict[tuple[str, str], TopicRow] = {}
+    for row in rows:
+        known = found.get((row.name, row.type))
+        count = row.message_count + (known.message_count if known else 0)
+        found[row.name, row.type] = replace(known or row, message_count=count)
+    return tuple(found.values())
 
 
 def read_metadata(folder: Path) -> BagMetadata:

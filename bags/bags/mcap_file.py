@@ -1,26 +1,21 @@
 """One MCAP file: its channels and messages, from its index or, where a run was killed, from what is whole."""
 
 import io
-import struct
-import zlib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 from mcap.exceptions import McapError
-from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap.summary import Summary
 
-from bags.mcap_scan import DAMAGE, MAGIC, Scan, scan
+from bags.bag_metadata import TopicRow
+from bags.mcap_scan import DAMAGE, MAGIC, Scan, open_file, scan, summary_at_end
+from bags.offered_qos import offers_from_text
 from robustnav_msgs_py.errors import BadFileError
-
-FOOTER = struct.Struct("<BQQQI")  # kind, length, begin of the summary, of its offsets, checksum of all before
-# What is shorter than this has no end to read an index from.
-SMALLEST_FILE = 2 * len(MAGIC) + FOOTER.size
 
 
 class _IndexedReader(SeekingReader):
@@ -47,6 +42,17 @@ class FileChannel:
     type_hash: str
     message_count: int
 
+    @property
+    def row(self) -> TopicRow:
+        """The topic as metadata.yaml tells it; raises BadFileError where its QoS cannot be read."""
+        return TopicRow(
+            name=self.topic,
+            type=self.type,
+            offers=offers_from_text(self.offered_qos),
+            type_hash=self.type_hash,
+            message_count=self.message_count,
+        )
+
 
 class McapFile:
     """One MCAP file, open for reading; close it, or use it in a `with` statement of its owner.
@@ -58,7 +64,7 @@ class McapFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.cut = ""
-        self._stream = _open(path)
+        self._stream = open_file(path)
         self._scan: Scan | None = None
         try:
             self._check_magic()
@@ -160,32 +166,12 @@ class McapFile:
 
     def _indexed(self) -> tuple[Summary, dict[int, int]] | None:
         """Summary and counts as the end of the file tells them, None where it does not."""
-        try:
-            if not self._end_is_sound():
-                return None
-            self._stream.seek(0)
-            summary = SeekingReader(self._stream).get_summary()
-        except DAMAGE:
-            return None
+        summary = summary_at_end(self._stream)
         if summary is None or summary.statistics is None:
             return None
         complete = summary.statistics.channel_count == len(summary.channels)
         indexed = summary.chunk_indexes or not summary.statistics.message_count
         return (summary, summary.statistics.channel_message_counts) if complete and indexed else None
-
-    def _end_is_sound(self) -> bool:
-        """Whether footer and magic stand at the end, and the summary is what its checksum says."""
-        size = self._stream.seek(0, io.SEEK_END)
-        if size < SMALLEST_FILE:
-            return False
-        footer_at = self._stream.seek(size - len(MAGIC) - FOOTER.size)
-        footer = self._stream.read(FOOTER.size)
-        kind, _, summary_at, _, checksum = FOOTER.unpack(footer)
-        if kind != Opcode.FOOTER or self._stream.read() != MAGIC or not 0 < summary_at <= footer_at:
-            return False
-        self._stream.seek(summary_at)
-        covered = self._stream.read(footer_at - summary_at) + footer[:-4]
-        return checksum in (0, zlib.crc32(covered))
 
     def _scanned(self) -> tuple[Summary, dict[int, int]]:
         found = self._scan = scan(self._stream)
@@ -222,13 +208,6 @@ class McapFile:
             if wanted and not early and not late:
                 found.append((self._summary.schemas.get(channel.schema_id), channel, record))
         yield from sorted(found, key=lambda item: item[2].log_time)
-
-
-def _open(path: Path) -> BinaryIO:
-    try:
-        return path.open("rb")
-    except OSError as error:
-        raise BadFileError(f"{path} cannot be opened: {error.strerror or error}") from error
 
 
 def _records(stream: BinaryIO) -> Iterator[object]:

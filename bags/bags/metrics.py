@@ -18,8 +18,8 @@ class SearchMetrics:
     """One search. What the bag does not tell is None.
 
     `phase` is the last that the planner told, `found` whether that is `found`; `success` whether an instance
-    of the target was then in view and near. `steps` counts decisions. `false_alarms` are the robot's poses at
-    which the target was detected where it is not, without the search ending at that place.
+    of the target was then in view and near. `steps` are the planner's, docking included. `false_alarms` are
+    the robot's poses at which the target was detected where it is not, without the search ending there.
     """
 
     target: str

@@ -9,17 +9,20 @@ from robustnav_msgs_py.parameters import parameter
 class RecorderParameters:
     """Where the recorder writes, what, and how much may wait to be written."""
 
-    folder: str = parameter("bags", "folder that bags are written to")
+    folder: str = parameter("runs", "folder that bags are written to")
     name: str = parameter("", "name of the bag; empty: run_ and the date and time at which it begins")
+    resume: bool = parameter(
+        False, "go on in the bag of this name that a killed recorder left; it is refused otherwise"
+    )
     include: str = parameter(".*", "regular expression; topics that match it wholly are recorded")
     exclude: str = parameter("", "regular expression; topics that match it wholly are left out")
-    chunk_size: int = parameter(
+    chunk_size_bytes: int = parameter(
         1_048_576, "size at which a chunk is compressed and written", unit="B", low=1024, high=268_435_456
     )
-    flush_period: float = parameter(
+    flush_period_s: float = parameter(
         1.0, "a run that is killed loses at most this much", unit="s", low=0.1, high=60.0
     )
-    queue_size: int = parameter(
+    queue_size_bytes: int = parameter(
         268_435_456,
         "messages that wait to be written; more are dropped and counted",
         unit="B",
@@ -27,9 +30,9 @@ class RecorderParameters:
         high=17_179_869_184,
     )
     depth: int = parameter(1000, "messages of a topic that may wait in the middleware", low=100, high=100_000)
-    discovery_period: float = parameter(
+    discovery_period_s: float = parameter(
         0.2, "how often the graph is searched for new topics", unit="s", low=0.02, high=10.0
     )
-    closing_limit: float = parameter(
+    closing_limit_s: float = parameter(
         30.0, "how long the end of the process waits for the bag to be closed", unit="s", low=1.0, high=600.0
     )

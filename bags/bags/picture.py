@@ -30,6 +30,7 @@ from bags.metrics_settings import MetricsSettings, settings_of
 from bags.reader import Bag
 from bags.search_run import SearchRun, read_search
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.records import SearchPhase
 from robustnav_msgs_py.values import OccupancyMap
 
 WIDTH_IN, HEAD_IN, FOOT_IN, BAR_IN = 9.6, 0.72, 0.95, 0.3
@@ -106,19 +107,21 @@ def _draw_words(figure: Figure, metrics: SearchMetrics, height_in: float) -> Non
 
 def _headline(metrics: SearchMetrics) -> str:
     wanted = f"“{metrics.target}”" if metrics.target else "nothing in particular"
-    if metrics.success:
-        return f"Searching for {wanted}: found"
+    return f"Searching for {wanted}: {_outcome(metrics)}".removesuffix(": ")
+
+
+def _outcome(metrics: SearchMetrics) -> str:
     if metrics.found:
-        return f"Searching for {wanted}: the robot says found" + (
-            ", but it is not" if metrics.success is False else ""
-        )
-    return f"Searching for {wanted}" + (f": {metrics.phase.replace('_', ' ')}" if metrics.phase else "")
+        return {True: "found", False: "the robot is mistaken", None: "the robot says found"}[metrics.success]
+    if metrics.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING):
+        return "not found yet"
+    return (metrics.phase or "").replace("_", " ")
 
 
 def _summary(metrics: SearchMetrics) -> str:
     parts = []
     if metrics.steps is not None:
-        parts.append(f"{metrics.steps} decisions")
+        parts.append(f"{metrics.steps} steps")
     if metrics.path_length_m is not None:
         shortest = (
             f" (shortest {metrics.shortest_path_m:.1f} m)" if metrics.shortest_path_m is not None else ""

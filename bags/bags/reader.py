@@ -6,11 +6,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from bags.bag_metadata import BagMetadata, TopicRow, read_metadata
+from bags.bag_metadata import BagMetadata, TopicRow, joined, read_metadata
 from bags.decoding import MessageDecoder
 from bags.manifest import Manifest, manifest_from_json
 from bags.mcap_file import FileChannel, McapFile
-from bags.offered_qos import offers_from_text
 from bags.writer import MANIFEST_RECORD
 from robustnav_msgs_py.errors import BadFileError
 
@@ -79,18 +78,8 @@ class Bag:
     @property
     def topics(self) -> tuple[TopicRow, ...]:
         """Topics by name, with types, publishers' QoS and the counts that the files themselves tell."""
-        rows: dict[tuple[str, str], TopicRow] = {}
-        for channel in self._channels():
-            key = (channel.topic, channel.type)
-            known = rows.get(key)
-            rows[key] = TopicRow(
-                name=channel.topic,
-                type=channel.type,
-                offers=known.offers if known else offers_from_text(channel.offered_qos),
-                type_hash=known.type_hash if known else channel.type_hash,
-                message_count=channel.message_count + (known.message_count if known else 0),
-            )
-        return tuple(rows[key] for key in sorted(rows))
+        rows = joined(channel.row for channel in self._channels())
+        return tuple(sorted(rows, key=lambda row: (row.name, row.type)))
 
     @property
     def manifest(self) -> Manifest | None:

@@ -6,8 +6,10 @@
 | says | `/diagnostics`: messages, bytes and drops of each topic |
 | asks | every node's `list_parameters` and `get_parameters`, for the manifest |
 
-It records while it is active. Deactivating returns at once: what was heard until then is still written, by
-a thread of its own. Cleaning up, shutting down or ending the process waits until the bag is closed.
+It records while it is active. With `resume` it goes on in the bag of its name that a killed recorder left:
+that one's file is repaired, and the next file of the bag is begun. Deactivating returns at once: what was
+heard until then is still written, by a thread of its own. Cleaning up, shutting down or ending the process
+waits until the bag is closed.
 """
 
 import re
@@ -49,12 +51,16 @@ class Recorder(GraphNode[RecorderParameters]):
 
     executable: ClassVar[str] = "recorder"
     declaration: ClassVar[type] = RecorderParameters
+    listen_on_s: ClassVar[float] = (
+        0.5  # what was said when the end came is on its way, and belongs to the run
+    )
 
     def __init__(self, **node_options: Any) -> None:
         super().__init__(**node_options)
         self.folder_of_bag: Path | None = None
         self._recording: Recording | None = None
         self._closing: list[Recording] = []
+        self._untold_repairs: list[Recording] = []
         self._told_drops = 0
         self._noted: Manifest | None = None
         self._listener: TopicListener | None = None
@@ -67,12 +73,12 @@ class Recorder(GraphNode[RecorderParameters]):
         parameters = self.parameters
         _pattern("include", parameters.include)
         _pattern("exclude", parameters.exclude)
-        self.every(parameters.discovery_period, self._discover, steady=True)
+        self.every(parameters.discovery_period_s, self._discover, steady=True)
         self.every(FIGURES_PERIOD_S, self._show_figures, steady=True)
         self.every(MANIFEST_PERIOD_S, self._note_manifest, steady=True)
 
     def activate(self) -> None:
-        """Begin a bag; refused where its folder exists already or cannot be written."""
+        """Begin a bag, or go on in one; refused where its folder exists already or cannot be written."""
         parameters = self.parameters
         self._manifest = replace(
             self._manifest, wall_start_ns=time.time_ns(), seed=None, scene="", sim_start_ns=None
@@ -80,12 +86,14 @@ class Recorder(GraphNode[RecorderParameters]):
         writer = BagWriter(
             _bag_folder(parameters, datetime.now().astimezone()),
             manifest=self._manifest,
-            chunk_bytes=parameters.chunk_size,
+            chunk_bytes=parameters.chunk_size_bytes,
+            resume=parameters.resume,
         )
         self.folder_of_bag = writer.folder
         self._recording = Recording(
-            writer, queue_bytes=parameters.queue_size, flush_period_s=parameters.flush_period
+            writer, queue_bytes=parameters.queue_size_bytes, flush_period_s=parameters.flush_period_s
         )
+        self._untold_repairs.append(self._recording)
         self._survey = ParameterSurvey(self)
         self._listener = TopicListener(
             self,
@@ -97,7 +105,7 @@ class Recorder(GraphNode[RecorderParameters]):
             say=self.health.problem,
         )
         self._told_drops, self._noted = 0, None
-        self.get_logger().info(f"recording to {writer.folder}")
+        self.get_logger().info(f"recording to {writer.path}")
 
     def deactivate(self) -> None:
         """Hear nothing more, and let the bag be closed."""
@@ -163,21 +171,19 @@ class Recorder(GraphNode[RecorderParameters]):
         self._manifest = replace(self._manifest, seed=episode.seed, scene=episode.home + rooms)
 
     def _show_figures(self) -> None:
-        if self._recording is None or self._listener is None:
+        self._tell_repairs()
+        if self._recording is None:
             return
         counts = self._recording.counts()
-        lost = self._listener.lost_in_middleware()
         dropped = sum(count.dropped for count in counts)
         self.health.figure("bag", self._recording.folder)
         self.health.figure("messages", sum(count.messages for count in counts))
         self.health.figure("bytes", sum(count.size_bytes for count in counts))
         self.health.figure("dropped", dropped)
-        self.health.figure("lost in the middleware", sum(lost.values()))
         self.health.figure("waiting to be written, bytes", self._recording.waiting_bytes)
         for count in counts:
             told = f"{count.messages} messages, {count.size_bytes} bytes, {count.dropped} dropped"
-            gone = f", {lost[count.topic]} lost in the middleware" if count.topic in lost else ""
-            self.health.figure(count.topic, told + gone)
+            self.health.figure(count.topic, told)
         if self._recording.failure:
             self.health.problem("bag", self._recording.failure, ERROR)
         elif dropped > self._told_drops:
@@ -185,13 +191,25 @@ class Recorder(GraphNode[RecorderParameters]):
             self.health.problem(
                 "queue",
                 f"{dropped} messages came while the disk was behind, and are not in the bag: raise "
-                "queue_size, exclude topics, or record to a faster disk",
+                "queue_size_bytes, exclude topics, or record to a faster disk",
                 WARN,
             )
 
+    def _tell_repairs(self) -> None:
+        """Say what was repaired of a bag that is gone on with, once it is."""
+        for recording in list(self._untold_repairs):
+            earlier = recording.earlier
+            if earlier is None:
+                continue
+            self._untold_repairs.remove(recording)
+            for report in earlier.repairs:
+                self.get_logger().info(report.sentence)
+            for problem in earlier.problems:
+                self.health.problem("earlier file", problem, WARN)
+
     def _wait_until_closed(self) -> None:
         for recording in self._closing:
-            if not recording.wait(self.parameters.closing_limit):
+            if not recording.wait(self.parameters.closing_limit_s):
                 self.health.problem("bag", f"{recording.folder} is still not closed", ERROR)
             elif recording.failure:
                 self.health.problem("bag", recording.failure, ERROR)
@@ -199,6 +217,7 @@ class Recorder(GraphNode[RecorderParameters]):
                 total = sum(count.messages for count in recording.counts())
                 self.get_logger().info(f"closed {recording.folder} with {total} messages")
         self._closing.clear()
+        self._tell_repairs()
 
 
 def _bag_folder(parameters: RecorderParameters, now: datetime) -> Path:

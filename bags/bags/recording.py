@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bags.definitions import MessageDefinition
+from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
 from bags.offered_qos import OfferedQos
 from bags.writer import BagWriter
@@ -49,11 +50,15 @@ class Recording:
     most `queue_bytes` wait to be written: what comes while the queue is full is dropped and counted, per
     topic. The bag is flushed every `flush_period_s`. When the disk fails, `failure` holds the sentence and
     everything from then on counts as dropped.
+
+    A bag that is gone on with is repaired first, in that thread: what is heard meanwhile waits in the queue,
+    and `earlier` is None until it is done.
     """
 
     def __init__(self, writer: BagWriter, *, queue_bytes: int, flush_period_s: float) -> None:
         self.folder = writer.folder
         self.failure = ""
+        self.earlier: EarlierFiles | None = None
         self._writer = writer
         self._queue_bytes = queue_bytes
         self._flush_period_s = flush_period_s
@@ -128,6 +133,10 @@ class Recording:
             )
 
     def _run(self) -> None:
+        try:
+            self.earlier = self._writer.join_earlier_files()
+        except Exception as error:
+            self._fail(error)
         flushed_s = time.monotonic()
         finishing = False
         while not finishing:

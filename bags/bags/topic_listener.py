@@ -4,7 +4,6 @@ import re
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -19,26 +18,38 @@ from robustnav_nodes.graph.node import message_class
 
 Observer = Callable[[bytes], None]
 
+# A publisher that is replaced, as by a node that starts again, need not find its topic unheard.
+FORSAKEN_AFTER_S = 1.0
+
 
 @dataclass(slots=True)
 class _Heard:
-    """One topic with one type: where its messages go, and how it is subscribed to."""
+    """One topic with one type: where its messages go, and how it is subscribed to.
+
+    `subscription` is None, and `forsaken_since_s` set, while nobody speaks on it.
+    """
 
     channel: int
     request: Request
-    subscription: Subscription
-    lost: int = 0
+    subscription: Subscription | None
+    forsaken_since_s: float | None = None
 
 
 class TopicListener:
     """Subscribes to the topics whose names match `include` and not `exclude`, as they appear.
 
     It asks for the most that all publishers of a topic offer, and for less when one joins that offers less.
+    A volatile topic that has lost all its publishers is let go after `FORSAKEN_AFTER_S`, and heard again, in
+    the same channel, when one appears. Who speaks only once (`ros2 topic pub --once`) does so as soon as one
+    listener is found: a recorder that still listens since an earlier speaker could be that one, and the node
+    that was spoken to would not hear a word. Latched topics are kept: whoever comes late has them anyway.
+
     Log times are wall-clock times at which a message was taken, as rosbag2 has them without simulated time;
     a message's source time is not known, since rclpy's EventsExecutor cannot hand it out.
 
     Owned by a node and used in its executor's thread. `observer_of(topic, type)` may return a function that
-    is shown the bytes of each message of that topic; `say(topic, sentence)` is told what could not be heard.
+    is shown the bytes of each message of that topic; `say(topic, sentence)` is told what could not be heard;
+    `clock` tells monotonic seconds.
     """
 
     def __init__(
@@ -51,6 +62,7 @@ class TopicListener:
         depth: int,
         observer_of: Callable[[str, str], Observer | None],
         say: Callable[[str, str], None],
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._node = node
         self._recording = recording
@@ -58,12 +70,13 @@ class TopicListener:
         self._depth = depth
         self._observer_of = observer_of
         self._say = say
+        self._clock = clock
         self._prefixes = ament_prefixes()
         self._heard: dict[tuple[str, str], _Heard] = {}
         self._refused: set[tuple[str, str]] = set()
 
     def discover(self) -> None:
-        """Subscribe to what is new, and ask for less where publishers now offer less."""
+        """Subscribe to what is new, ask for less where publishers now offer less, let go what is forsaken."""
         for topic, types in self._node.get_topic_names_and_types():
             if not self._include.fullmatch(topic) or (self._exclude and self._exclude.fullmatch(topic)):
                 continue
@@ -74,21 +87,15 @@ class TopicListener:
                     for publisher in publishers
                     if publisher.topic_type == message_type
                 ]
-                if offers and (topic, message_type) not in self._refused:
+                if not offers:
+                    self._forsake(topic, message_type)
+                elif (topic, message_type) not in self._refused:
                     self._hear(topic, message_type, offers)
-
-    def lost_in_middleware(self) -> dict[str, int]:
-        """Messages per topic that the middleware says it lost on the way; topics without losses left out."""
-        lost: dict[str, int] = {}
-        for (topic, _), heard in self._heard.items():
-            if heard.lost:
-                lost[topic] = lost.get(topic, 0) + heard.lost
-        return lost
 
     def close(self) -> None:
         """Hear nothing any more."""
         for heard in self._heard.values():
-            self._node.destroy_subscription(heard.subscription)
+            self._unsubscribe(heard)
         self._heard.clear()
 
     def _hear(self, topic: str, message_type: str, offers: Sequence[OfferedQos]) -> None:
@@ -96,10 +103,15 @@ class TopicListener:
         known = self._heard.get((topic, message_type))
         if known is None:
             self._hear_new(topic, message_type, offers, request)
+            return
+        known.forsaken_since_s = None
+        if known.subscription is None:
+            known.request = request
+            known.subscription = self._subscribe(topic, message_type, known.channel, request)
         elif (known.request.reliable and not request.reliable) or (
             known.request.latched and not request.latched
         ):
-            self._node.destroy_subscription(known.subscription)
+            self._unsubscribe(known)
             known.request = request
             known.subscription = self._subscribe(topic, message_type, known.channel, request)
             self._say(
@@ -121,6 +133,21 @@ class TopicListener:
         channel = self._recording.add_topic(topic, definition, offers)
         subscription = self._subscribe(topic, message_type, channel, request)
         self._heard[topic, message_type] = _Heard(channel=channel, request=request, subscription=subscription)
+
+    def _forsake(self, topic: str, message_type: str) -> None:
+        """Nobody speaks on a topic now; let it go when that has lasted."""
+        heard = self._heard.get((topic, message_type))
+        if heard is None or heard.request.latched:
+            return
+        if heard.forsaken_since_s is None:
+            heard.forsaken_since_s = self._clock()
+        elif self._clock() - heard.forsaken_since_s >= FORSAKEN_AFTER_S:
+            self._unsubscribe(heard)
+
+    def _unsubscribe(self, heard: _Heard) -> None:
+        if heard.subscription is not None:
+            self._node.destroy_subscription(heard.subscription)
+            heard.subscription = None
 
     def _subscribe(self, topic: str, message_type: str, channel: int, request: Request) -> Subscription:
         put = self._recording.put
@@ -144,17 +171,10 @@ class TopicListener:
                 ),
             ),
             raw=True,
-            event_callbacks=SubscriptionEventCallbacks(
-                # Asking for less, at the next discovery, is the answer to publishers that offer less.
-                incompatible_qos=lambda _: None,
-                message_lost=lambda event: self._count_lost(topic, message_type, event),
-            ),
+            # An event that is still queued when its subscription is destroyed, as those that hear too much
+            # are, would raise out of rclpy's EventsExecutor and end the node.
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
-
-    def _count_lost(self, topic: str, message_type: str, event: Any) -> None:
-        heard = self._heard.get((topic, message_type))
-        if heard is not None:
-            heard.lost += int(event.total_count_change)
 
 
 def _offer(profile: QoSProfile) -> OfferedQos:

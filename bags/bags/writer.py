@@ -1,4 +1,4 @@
-"""Write a bag that `ros2 bag info` and `ros2 bag play` take: a folder with an MCAP file and metadata.yaml."""
+"""Write a bag that `ros2 bag info` and `ros2 bag play` take: a folder with MCAP files and metadata.yaml."""
 
 import time
 from collections.abc import Sequence
@@ -10,8 +10,17 @@ from typing import BinaryIO, Self
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 
-from bags.bag_metadata import BagMetadata, CustomEntry, FileRow, TopicRow
+from bags.bag_metadata import BagMetadata, CustomEntry, FileRow, TopicRow, joined
 from bags.definitions import MessageDefinition
+from bags.earlier_files import (
+    CLOSED_ENTRY,
+    EarlierFiles,
+    file_name,
+    find_earlier_files,
+    lock,
+    next_number,
+    repair_earlier_files,
+)
 from bags.manifest import Manifest
 from bags.offered_qos import OfferedQos, offers_as_text
 from robustnav_msgs_py.errors import BadFileError
@@ -36,29 +45,43 @@ class _Channel:
 class BagWriter:
     """Writes one bag: the folder `folder` with the file NAME_0.mcap and metadata.yaml in it.
 
+    With `resume`, a bag that a killed recorder left in `folder` is gone on with in its next file, NAME_1.mcap
+    and so on. Opening takes no time even then; `join_earlier_files()` repairs what was cut, which takes a
+    second or more for a large file, and brings all into metadata.yaml. `close()` does it where nobody did.
+
     Chunks are compressed with zstd: on rendered images it makes files a quarter smaller than lz4 and still
     takes 1 GB/s. What was written before a `flush()` outlives a SIGKILL. `manifest` is stored at once, and
     again when `update_manifest()` brings a fuller one; readers take the last.
 
-    One thread at a time may use a writer. Raises BadFileError where the folder exists already or cannot be
-    made; OSError from the other methods says that the disk failed (usually: is full).
+    One thread at a time may use a writer. Raises BadFileError where the folder exists already (with `resume`:
+    and its bag was closed, or is being written) or cannot be made; OSError from the other methods says that
+    the disk failed (usually: is full).
     """
 
-    def __init__(self, folder: Path, *, manifest: Manifest, chunk_bytes: int = 1024 * 1024) -> None:
+    def __init__(
+        self, folder: Path, *, manifest: Manifest, chunk_bytes: int = 1024 * 1024, resume: bool = False
+    ) -> None:
         self.folder = folder
         self._manifest = manifest
-        self._file_name = f"{folder.name}_0.mcap"
+        self._earlier_paths = find_earlier_files(folder) if resume and folder.is_dir() else ()
+        self._earlier = None if self._earlier_paths else EarlierFiles()
+        self._file_name = file_name(folder, next_number(folder, self._earlier_paths))
         self._channels: list[_Channel] = []
         self._schema_ids: dict[str, int] = {}
         self._first_ns: int | None = None
         self._last_ns = 0
         self._flushes = 0
         self._metadata_is_old = True
-        self._file = _create(folder, self._file_name)
+        self._file = _create(folder, self._file_name, folder_may_exist=resume)
         self._mcap = McapWriter(self._file, chunk_size=chunk_bytes, compression=CompressionType.ZSTD)
         self._mcap.start(profile=PROFILE, library=f"robustnav {manifest.version}".rstrip())
         self._store_manifest()
         self.flush()
+
+    @property
+    def path(self) -> Path:
+        """The file that is written."""
+        return self.folder / self._file_name
 
     @property
     def file_bytes(self) -> int:
@@ -93,10 +116,19 @@ class BagWriter:
         self._first_ns = log_time_ns if self._first_ns is None else min(self._first_ns, log_time_ns)
         self._last_ns = max(self._last_ns, log_time_ns)
 
+    def join_earlier_files(self) -> EarlierFiles:
+        """Repair the files before this one that were cut, and count all; the second call only tells again."""
+        if self._earlier is None:
+            self._earlier = repair_earlier_files(self._earlier_paths)
+            self.metadata().write(self.folder)
+        return self._earlier
+
     def flush(self) -> None:
         """Hand everything written so far to the operating system; now and then renew metadata.yaml."""
         self._mcap.flush()
         self._flushes += 1
+        if self._earlier is None:  # until these are joined, metadata.yaml stays the killed recorder's
+            return
         if self._metadata_is_old or self._flushes % FLUSHES_PER_METADATA == 0:
             self.metadata().write(self.folder)
             self._metadata_is_old = False
@@ -113,6 +145,7 @@ class BagWriter:
         if self._file.closed:
             return
         try:
+            self.join_earlier_files()
             self._mcap.add_metadata("rosbag2", {"serialized_metadata": self.metadata().as_text()})
             self._mcap.finish()
         finally:
@@ -128,7 +161,7 @@ class BagWriter:
             duration_ns=max(0, self._last_ns - first_ns),
             message_count=sum(channel.message_count for channel in self._channels),
         )
-        topics = tuple(
+        own = (
             TopicRow(
                 name=channel.topic,
                 type=channel.definition.type,
@@ -138,7 +171,12 @@ class BagWriter:
             )
             for channel in self._channels
         )
-        return BagMetadata(files=(row,), topics=topics, custom=_essentials(self._manifest, closed=closed))
+        earlier = self._earlier or EarlierFiles()
+        return BagMetadata(
+            files=(*earlier.files, row),
+            topics=joined((*earlier.topics, *own)),
+            custom=_essentials(self._manifest, closed=closed),
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -168,18 +206,20 @@ def _essentials(manifest: Manifest, *, closed: bool) -> tuple[CustomEntry, ...]:
         "robustnav_back_ends": ", ".join(
             f"{row.node} {row.parameter}={row.choice}" for row in manifest.back_ends
         ),
-        "robustnav_closed": "yes" if closed else "no",
+        CLOSED_ENTRY: "yes" if closed else "no",
     }
     return tuple(CustomEntry(name=name, text=text) for name, text in told.items() if text)
 
 
-def _create(folder: Path, file_name: str) -> BinaryIO:
+def _create(folder: Path, file_name: str, *, folder_may_exist: bool) -> BinaryIO:
     try:
-        folder.mkdir(parents=True)
-        return (folder / file_name).open("xb")
+        folder.mkdir(parents=True, exist_ok=folder_may_exist)
+        stream = (folder / file_name).open("xb")
     except FileExistsError as error:
         raise BadFileError(
             f"{folder} exists already and is not overwritten; choose another name or move it away"
         ) from error
     except OSError as error:
         raise BadFileError(f"a bag cannot be written to {folder}: {error.strerror or error}") from error
+    lock(stream)
+    return stream

@@ -70,13 +70,25 @@ class NodeRow:
 
 NODES = (
     NodeRow(
-        package="sim_bridge", executable="sim_bridge", purpose="a simulated home and robot, where a robot stands"
+        package="sim_bridge",
+        executable="sim_bridge",
+        purpose="a simulated home and robot, where a robot stands",
     ),
-    NodeRow(package="robustnav_nodes", executable="detection", purpose="objects in the camera image, with places"),
-    NodeRow(package="robustnav_nodes", executable="belief", purpose="where the target may be, by Bayes' rule"),
-    NodeRow(package="robustnav_nodes", executable="planner", purpose="where to look next, by POMCP, and docking"),
-    NodeRow(package="robustnav_nodes", executable="dialogue", purpose="the front door: talks with the person"),
-    NodeRow(package="robustnav_nodes", executable="simulated_user", purpose="a person who asks for an object"),
+    NodeRow(
+        package="robustnav_nodes", executable="detection", purpose="objects in the camera image, with places"
+    ),
+    NodeRow(
+        package="robustnav_nodes", executable="belief", purpose="where the target may be, by Bayes' rule"
+    ),
+    NodeRow(
+        package="robustnav_nodes", executable="planner", purpose="where to look next, by POMCP, and docking"
+    ),
+    NodeRow(
+        package="robustnav_nodes", executable="dialogue", purpose="the front door: talks with the person"
+    ),
+    NodeRow(
+        package="robustnav_nodes", executable="simulated_user", purpose="a person who asks for an object"
+    ),
     NodeRow(package="bags", executable="recorder", purpose="every topic into an MCAP bag with a manifest"),
     NodeRow(package="robustnav_nodes", executable="manager", purpose="brings the nodes up and keeps them up"),
 )
@@ -328,20 +340,36 @@ SERVICES = (
     Service(name="~/reset", type="std_srvs/srv/Trigger", server="sim_bridge", meaning="back to the start"),
     Service(name="~/pause", type="std_srvs/srv/SetBool", server="sim_bridge", meaning="hold simulated time"),
     Service(
-        name="~/step", type="std_srvs/srv/Trigger", server="sim_bridge", meaning="advance one period while paused"
+        name="~/step",
+        type="std_srvs/srv/Trigger",
+        server="sim_bridge",
+        meaning="advance one period while paused",
     ),
     Service(
-        name="belief/get_map", type="nav_msgs/srv/GetMap", server="belief", meaning="the belief as a grid, now"
+        name="belief/get_map",
+        type="nav_msgs/srv/GetMap",
+        server="belief",
+        meaning="the belief as a grid, now",
     ),
     Service(name="~/reset", type="std_srvs/srv/Trigger", server="belief", meaning="forget every observation"),
-    Service(name="~/start", type="std_srvs/srv/Trigger", server="planner", meaning="search for the target again"),
-    Service(name="~/stop", type="std_srvs/srv/Trigger", server="planner", meaning="stop the search and the robot"),
-    Service(name="~/startup", type="std_srvs/srv/Trigger", server="manager", meaning="bring every node up"),
     Service(
-        name="~/shutdown", type="std_srvs/srv/Trigger", server="manager", meaning="take every node down, last one first"
+        name="~/start", type="std_srvs/srv/Trigger", server="planner", meaning="search for the target again"
     ),
     Service(
-        name="plan/get_plan", type="nav_msgs/srv/GetPlan", server="planner", meaning="shortest way on the pose graph"
+        name="~/stop", type="std_srvs/srv/Trigger", server="planner", meaning="stop the search and the robot"
+    ),
+    Service(name="~/startup", type="std_srvs/srv/Trigger", server="manager", meaning="bring every node up"),
+    Service(
+        name="~/shutdown",
+        type="std_srvs/srv/Trigger",
+        server="manager",
+        meaning="take every node down, last one first",
+    ),
+    Service(
+        name="plan/get_plan",
+        type="nav_msgs/srv/GetPlan",
+        server="planner",
+        meaning="shortest way on the pose graph",
     ),
 )
 
@@ -364,7 +392,9 @@ def service(name: str, server: str) -> Service:
 
 def spoken_by(executable: str) -> tuple[Topic, ...]:
     """Topics that `executable` publishes."""
-    return _of(executable, (row for row in TOPICS if executable in row.speakers or EVERY_NODE in row.speakers))
+    return _of(
+        executable, (row for row in TOPICS if executable in row.speakers or EVERY_NODE in row.speakers)
+    )
 
 
 def heard_by(executable: str) -> tuple[Topic, ...]:

@@ -95,7 +95,9 @@ def specs(declaration: type) -> tuple[ParameterSpec, ...]:
     """The parameters that a dataclass declares, in order."""
     found = []
     for item in dataclasses.fields(declaration):
-        default = item.default if item.default is not dataclasses.MISSING else item.default_factory()  # type: ignore[misc]
+        default: Any = item.default
+        if item.default_factory is not dataclasses.MISSING:
+            default = item.default_factory()
         found.append(ParameterSpec(name=item.name, type=type(default), default=default, **item.metadata))
     return tuple(found)
 

@@ -79,5 +79,6 @@ class DialogueState:
 
     scenario: str = "search"
     target: str = ""
+    lines_heard: int = 0
     last_heard: str = ""
     last_said: str = ""

@@ -161,7 +161,8 @@ class CameraModel:
 
     def __post_init__(self) -> None:
         _require(
-            self.width > 0 and self.height > 0, f"a camera of {self.width} x {self.height} pixels sees nothing"
+            self.width > 0 and self.height > 0,
+            f"a camera of {self.width} x {self.height} pixels sees nothing",
         )
         _require(
             self.fx > 0.0 and self.fy > 0.0,

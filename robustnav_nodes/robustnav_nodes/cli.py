@@ -44,19 +44,23 @@ def _console() -> Console:
 @app.command()
 def demo(
     scenario: Annotated[Scenario, typer.Option(help="what to show")] = Scenario.SEARCH,
-    user: Annotated[User, typer.Option(help="who asks: a simulated person, or you (robustnav chat)")] = User.SIMULATED,
-    seed: Annotated[int, typer.Option(min=0, help="decides the home, the object and the detector's errors")] = 1,
-    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default bags/demo_DATE")] = None,
+    user: Annotated[
+        User, typer.Option(help="who asks: a simulated person, or you (robustnav chat)")
+    ] = User.SIMULATED,
+    seed: Annotated[
+        int, typer.Option(min=0, help="decides the home, the object and the detector's errors")
+    ] = 1,
+    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/demo_DATE")] = None,
     target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
     speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds per second")] = 2.0,
 ) -> None:
     """Run one search in a simulated home, record it, and sum it up from the bag."""
+    from bags.demo_summary import show_summary
     from robustnav_nodes.graph.demo import Demo
-    from robustnav_nodes.graph.demo_summary import show_summary
     from robustnav_nodes.graph.search_graph import RunPlan
 
     console = _console()
-    folder = bag or Path("bags") / f"demo_{time.strftime('%Y%m%d_%H%M%S')}"
+    folder = bag or Path("runs") / f"demo_{time.strftime('%Y%m%d_%H%M%S')}"
     if folder.exists():
         raise BadParameterError(f"the bag {str(folder)!r} exists already; name another one with --bag")
     human = user is User.HUMAN
@@ -69,9 +73,13 @@ def demo(
             "simulated_user": {"target": target},
         },
     )
-    console.print(f"robustnav demo: {scenario.value} in a simulated home, seed {seed}, {speed:g} times real time")
+    console.print(
+        f"robustnav demo: {scenario.value} in a simulated home, seed {seed}, {speed:g} times real time"
+    )
     if human:
-        console.print("talk to the robot from another terminal: [bold]robustnav chat[/]   (Ctrl-C here ends the demo)")
+        console.print(
+            "talk to the robot from another terminal: [bold]robustnav chat[/]   (Ctrl-C here ends the demo)"
+        )
     else:
         console.print("[dim]starting 8 nodes, a process each; the first time, numba compiles the planner[/]")
     logs = folder.parent / f"{folder.name}_logs"
@@ -87,14 +95,16 @@ def up(
     no_record: Annotated[bool, typer.Option("--no-record", help="record nothing")] = False,
     sim: Annotated[bool, typer.Option(help="with the simulated home; --no-sim on a robot")] = True,
     user: Annotated[User, typer.Option(help="who asks")] = User.HUMAN,
-    seed: Annotated[int, typer.Option(min=0, help="decides the simulated home and the planner's chances")] = 1,
-    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default bags/run_DATE")] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, help="decides the simulated home and the planner's chances")
+    ] = 1,
+    bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/run_DATE")] = None,
 ) -> None:
     """Run the graph until stopped (Ctrl-C)."""
     from robustnav_nodes.graph.search_graph import RunPlan
     from robustnav_nodes.graph.up import run_graph
 
-    folder = bag or Path("bags") / f"run_{time.strftime('%Y%m%d_%H%M%S')}"
+    folder = bag or Path("runs") / f"run_{time.strftime('%Y%m%d_%H%M%S')}"
     plan = RunPlan(
         seed=seed,
         with_simulation=sim,
@@ -103,11 +113,15 @@ def up(
         user_parameters=params,
         parameters={},
     )
-    code = run_graph(plan, _console(), log_folder=folder.parent / f"{folder.name}_logs", one_process=one_process)
+    code = run_graph(
+        plan, _console(), log_folder=folder.parent / f"{folder.name}_logs", one_process=one_process
+    )
     raise typer.Exit(code)
 
 
-@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})
+@app.command(
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+)
 def run(context: typer.Context, package: str, executable: str) -> None:
     """Start one node, as `ros2 run PACKAGE EXECUTABLE [args]` does."""
     raise typer.Exit(_run(package, executable, context.args))
@@ -128,7 +142,11 @@ def doctor() -> None:
 
     table = Table("", "what", "found", "remedy")
     findings = examine()
-    marks = {Finding.Level.OK: "[green]ok[/]", Finding.Level.NOTE: "[yellow]note[/]", Finding.Level.BAD: "[red]bad[/]"}
+    marks = {
+        Finding.Level.OK: "[green]ok[/]",
+        Finding.Level.NOTE: "[yellow]note[/]",
+        Finding.Level.BAD: "[red]bad[/]",
+    }
     for finding in findings:
         table.add_row(marks[finding.level], finding.what, finding.found, finding.remedy)
     _console().print(table)

@@ -150,7 +150,7 @@ def bookcase(rng: np.random.Generator) -> Design:
     darker = (wood[0] * 0.6, wood[1] * 0.6, wood[2] * 0.6)
     back = box(
         (-depth_m / 2.0 + board_m / 2.0, 0.0, height_m / 2.0),
-        (board_m, width_m - 2 * board_m, height_m - 2 * board_m),
+        (board_m, width_m - board_m, height_m - board_m),
         darker,
     )
     sides = tuple(
@@ -184,8 +184,8 @@ def bed(rng: np.random.Generator) -> Design:
         box((0.0, 0.0, foot_m + frame_m / 2.0), (depth_m, width_m, frame_m), wood),
         box((-depth_m / 2.0 + head_m / 2.0, 0.0, 0.5), (head_m, width_m, 0.9), wood),
         box(
-            (head_m / 2.0, 0.0, top_m - mattress_m / 2.0 - thickness_m),
-            (depth_m - head_m, width_m - 0.04, mattress_m - 2 * thickness_m),
+            (0.0, 0.0, top_m - mattress_m / 2.0 - thickness_m),
+            (depth_m - 2 * head_m, width_m - 0.04, mattress_m - 2 * thickness_m),
             LINEN,
         ),
         box(

@@ -43,7 +43,7 @@ from robustnav_msgs_py.values import Pose2D, StampedPose, Velocity
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 from sim_bridge.floor_plan import candidate_mask, floor_plan
-from sim_bridge.pace import Pace
+from sim_bridge.pace import MOST_BEHIND_S, SHORTEST_TIMER_S, TURN_S, Pace
 from sim_bridge.parameters import SimParameters
 
 if TYPE_CHECKING:
@@ -51,11 +51,6 @@ if TYPE_CHECKING:
 
 # `odom` does not drift here, so a pose in it is a pose in `map`.
 KNOWN_FRAMES = ("map", "odom")
-# How long the executor may be kept busy before other callbacks get their turn; one image may take longer.
-TURN_S = 0.01
-# Wall time that is made up for after the executor was held up; more is dropped.
-MOST_BEHIND_S = 0.2
-SHORTEST_TIMER_S = 0.002
 
 
 class SimBridge(GraphNode[SimParameters]):

@@ -1,5 +1,11 @@
 """How many steps of simulated time are due as wall time goes by."""
 
+# How long the executor may be kept busy before other callbacks get their turn; one image may take longer.
+TURN_S = 0.01
+# Wall time that is made up for after the executor was held up; more is dropped.
+MOST_BEHIND_S = 0.2
+SHORTEST_TIMER_S = 0.002
+
 
 class Pace:
     """Keeps simulated time in step with wall time; what cannot be kept up with is dropped, not saved up.

@@ -27,7 +27,6 @@ from bags.reader import Bag, open_bag
 from bags.recorder import Recorder
 from robustnav_msgs_py.conversions import clock_to_message, record_to_message
 from robustnav_msgs_py.records import Episode
-from robustnav_nodes.graph.environment import prepare_environment
 from robustnav_nodes.graph.node import message_class
 
 LIMIT_S = 20.0
@@ -67,13 +66,14 @@ class Graph:
         self.bags = bags
         self.executor = EventsExecutor()
         self.nodes: list[Node] = []
+        self.processes: list[subprocess.Popen[str]] = []
 
     def node(self, name: str) -> Node:
         return self.add(rclpy.create_node(name))
 
     def recorder(self, **parameters: Any) -> Recorder:
         """A recorder that is active; a parameter of None keeps its default."""
-        given = {"folder": str(self.bags), "name": "run", "discovery_period": 0.02, **parameters}
+        given = {"folder": str(self.bags), "name": "run", "discovery_period_s": 0.02, **parameters}
         overrides = [Parameter(name, value=value) for name, value in given.items() if value is not None]
         recorder = self.add(Recorder(parameter_overrides=overrides))
         recorder.trigger_configure()
@@ -85,6 +85,13 @@ class Graph:
         self.nodes.append(node)
         self.executor.add_node(node)
         return node
+
+    def process(self, *arguments: str) -> subprocess.Popen[str]:
+        pipe = subprocess.PIPE
+        self.processes.append(
+            subprocess.Popen([sys.executable, *arguments], stdin=pipe, stdout=pipe, text=True)
+        )
+        return self.processes[-1]
 
     def until(self, holds: Callable[[], Any]) -> None:
         deadline = time.monotonic() + LIMIT_S
@@ -99,13 +106,14 @@ class Graph:
     def close(self) -> None:
         for node in reversed(self.nodes):
             node.destroy_node()
+        for process in self.processes:
+            process.terminate()
+            with process:  # waits, and closes its pipes
+                pass
 
 
 @pytest.fixture
-def graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Graph]:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    prepare_environment(local=True)
+def graph(tmp_path: Path) -> Iterator[Graph]:
     rclpy.init()
     made = Graph(tmp_path / "bags")
     try:
@@ -121,10 +129,7 @@ def data_of(bag: Bag, topic: str) -> list[Any]:
 
 def test_every_message_of_reliable_topics_is_recorded(graph: Graph) -> None:
     recorder = graph.recorder()
-    talker = subprocess.Popen(
-        [sys.executable, "-c", TALKER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    assert talker.stdin is not None
+    talker = graph.process("-c", TALKER)
     assert talker.stdout is not None
     os.set_blocking(talker.stdout.fileno(), False)
     graph.until(lambda: talker.stdout.readline())
@@ -291,7 +296,7 @@ def test_a_type_that_is_not_installed_is_said_once(graph: Graph, monkeypatch: py
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_recorder_that_is_told_to_stop_closes_its_bag(graph: Graph, number: signal.Signals) -> None:
     parameters = ["--ros-args", "-p", f"folder:={graph.bags}", "-p", "name:=run"]
-    process = subprocess.Popen([sys.executable, "-m", "bags.recorder", *parameters])
+    process = graph.process("-m", "bags.recorder", *parameters)
     node = graph.node("talker")
     publisher = node.create_publisher(UInt64, "numbers", 100)
     taken: list[str] = []

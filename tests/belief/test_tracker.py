@@ -9,7 +9,9 @@ from robustnav_nodes.belief.tracker import BeliefTracker
 from robustnav_nodes.belief.view_gate import Verdict
 from robustnav_nodes.search_space.camera_view import build_camera_view
 
-PARAMETERS = BeliefParameters(camera_forward_m=0.0, detection_sigma_m=0.5, detection_floor=0.1)
+PARAMETERS = BeliefParameters(
+    camera_forward_m=0.0, range_min_m=0.5, range_max_m=4.0, detection_sigma_m=0.5, detection_floor=0.1
+)
 SILENT = np.zeros((0, 3))
 ORIGIN = Pose2D(x_m=0.0, y_m=0.0)
 

@@ -34,8 +34,15 @@ def space_of() -> Callable[..., SearchSpace]:
 
 
 def planner_parameters(**changes: object) -> PlannerParameters:
-    settings = {"camera_forward_m": 0.0, "robot_radius_m": 0.1, "candidate_size_m": 0.3} | changes
-    return PlannerParameters(**settings)  # type: ignore[arg-type]
+    by_hand = {
+        "camera_forward_m": 0.0,
+        "robot_radius_m": 0.1,
+        "candidate_size_m": 0.3,
+        "range_min_m": 0.5,
+        "range_max_m": 4.0,
+        "docking_distance_m": 0.8,
+    }
+    return PlannerParameters(**(by_hand | changes))  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Values go to messages and back unchanged, also through the wire; bad messages are refused with a sentence."""
+"""Values go to messages and back unchanged, also through the wire; bad messages are refused."""
 
 import dataclasses
 import math
@@ -122,7 +122,9 @@ def beliefs(draw: Any) -> BeliefCloud:
     count = draw(st.integers(1, 20))
     weight = draw(hnp.arrays(np.float64, count, elements=st.floats(1e-6, 1.0)))
     return BeliefCloud(
-        position_m=draw(arrays(np.float32, count, 3)), probability=weight / weight.sum(), stamp_ns=draw(STAMPS)
+        position_m=draw(arrays(np.float32, count, 3)),
+        probability=weight / weight.sum(),
+        stamp_ns=draw(STAMPS),
     )
 
 
@@ -213,7 +215,9 @@ def test_a_decision_comes_back_exactly(values: list[float], visits: list[int]) -
 
 
 def test_other_records_come_back() -> None:
-    episode = Episode(seed=3, home="h", rooms=("kitchen", "bath"), start_x_m=1.0, start_y_m=2.0, start_yaw_rad=0.1)
+    episode = Episode(
+        seed=3, home="h", rooms=("kitchen", "bath"), start_x_m=1.0, start_y_m=2.0, start_yaw_rad=0.1
+    )
     assert wire.record_from_message(wire.record_to_message(episode), Episode) == episode
     talk = DialogueState(target="mug", last_heard="找到杯子")
     assert wire.record_from_message(wire.record_to_message(talk), DialogueState) == talk
@@ -234,7 +238,9 @@ def test_a_record_of_another_kind_or_with_a_hole_is_refused() -> None:
 
 def test_objects_scans_paths_labels_and_text_come_back() -> None:
     objects = (
-        ObjectInstance(instance=3, label="mug", x_m=1.0, y_m=2.0, z_m=0.8, yaw_rad=0.5, size_m=(0.1, 0.1, 0.2)),
+        ObjectInstance(
+            instance=3, label="mug", x_m=1.0, y_m=2.0, z_m=0.8, yaw_rad=0.5, size_m=(0.1, 0.1, 0.2)
+        ),
     )
     back = wire.objects_from_message(through_the_wire(wire.objects_to_message(objects)))
     assert all(same(one, other) for one, other in zip(objects, back, strict=True))
@@ -312,7 +318,9 @@ def test_bad_maps_are_refused() -> None:
 
 
 def test_bad_clouds_are_refused() -> None:
-    belief = BeliefCloud(position_m=np.zeros((2, 3), np.float32), probability=np.array([0.5, 0.5]), stamp_ns=1)
+    belief = BeliefCloud(
+        position_m=np.zeros((2, 3), np.float32), probability=np.array([0.5, 0.5]), stamp_ns=1
+    )
     message = wire.belief_to_message(belief)
     with pytest.raises(BadMessageError, match="score"):
         wire.detections_from_message(message)

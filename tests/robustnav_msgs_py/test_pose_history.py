@@ -1,4 +1,4 @@
-"""Where the robot was at a stamp: interpolated, across the seam of the heading, and forgotten after a reset."""
+"""Where the robot was at a stamp: interpolated, across the seam of headings, forgotten after a reset."""
 
 import math
 

@@ -29,8 +29,8 @@ def drawn() -> Callable[..., Drawn]:
 
 @pytest.fixture(scope="session")
 def parameters() -> SearchSpaceParameters:
-    """The camera at the robot's centre, so that distances can be worked out by hand."""
-    return SearchSpaceParameters(camera_forward_m=0.0)
+    """What the maps drawn here are worked out for by hand: the camera at the robot's centre, near and far."""
+    return SearchSpaceParameters(camera_forward_m=0.0, range_min_m=0.5, range_max_m=4.0)
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from sim_bridge.furniture import BUILDERS
 from sim_bridge.generator import generate_home
 from sim_bridge.home import Home, Rect
 from sim_bridge.objects import CLASSES, COLOURS, LABELS
-from sim_bridge.shapes import extent
+from sim_bridge.shapes import Part, Shape, extent
 
 PLANNERS_RADIUS_M = 0.18
 
@@ -167,3 +167,31 @@ def test_furniture_stays_within_its_footprint_and_stands_on_the_floor() -> None:
             assert max(-low[1], high[1]) <= design.width_m / 2 + 1e-9, kind
             for length_m in (design.depth_m, design.width_m):
                 assert length_m / RESOLUTION_M == pytest.approx(round(length_m / RESOLUTION_M))
+
+
+def flickering(parts: tuple[Part, ...]) -> list[tuple[Part, Part]]:
+    """Boxes of different colours with faces that lie in one plane, look the same way and overlap."""
+    found = []
+    boxes = [part for part in parts if part.shape is Shape.BOX]
+    for at, one in enumerate(boxes):
+        for other in boxes[:at]:
+            centre, size = np.array([one.centre_m, other.centre_m]), np.array([one.size_m, other.size_m])
+            low, high = centre - size / 2, centre + size / 2
+            overlap = np.minimum(high[0], high[1]) - np.maximum(low[0], low[1])
+            for axis in range(3):
+                aside = [other_axis for other_axis in range(3) if other_axis != axis]
+                # What faces the floor, or the wall behind, is never seen.
+                faces = [high] if axis in (0, 2) else [low, high]
+                if (overlap[aside] > 1e-6).all() and any(abs(np.diff(f[:, axis])) < 2e-4 for f in faces):
+                    found.append((one, other))
+    return [(one, other) for one, other in found if one.colour != other.colour]
+
+
+def test_no_two_colours_share_a_face() -> None:
+    """The renderer would show a random mixture of the two."""
+    rng = np.random.default_rng(1)
+    for kind, build in BUILDERS.items():
+        for _ in range(5):
+            assert not flickering(build(rng).parts), kind
+    for item in CLASSES:
+        assert not flickering(item.build(COLOURS[item.colours[0]])), item.label

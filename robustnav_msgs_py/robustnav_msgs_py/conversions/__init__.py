@@ -38,13 +38,18 @@ from robustnav_msgs_py.conversions.motion import (
     velocity_to_message,
 )
 from robustnav_msgs_py.conversions.scan import scan_from_message, scan_to_message
+from robustnav_msgs_py.conversions.stamps import (
+    NANOSECONDS,
+    clock_to_message,
+    stamp_from_message,
+    stamp_to_message,
+)
 from robustnav_msgs_py.conversions.status import (
     record_from_message,
     record_to_message,
     status_from_message,
     status_to_message,
 )
-from robustnav_msgs_py.conversions.stamps import NANOSECONDS, clock_to_message, stamp_from_message, stamp_to_message
 from robustnav_msgs_py.conversions.text import (
     labels_from_message,
     labels_to_message,

@@ -21,7 +21,7 @@ def to_array(values: NDArray[Any]) -> "array[Any]":
 
 
 def from_array(values: Any, dtype: Any) -> NDArray[Any]:
-    """A message's array field (array.array, bytes, list or ndarray) as a flat ndarray, without a copy if possible."""
+    """A message's array field (array.array, bytes, list, ndarray) as a flat ndarray, uncopied if possible."""
     if isinstance(values, (array, bytes, bytearray, memoryview)):
         return np.frombuffer(values, dtype=dtype) if len(values) else np.empty(0, dtype=dtype)
     return np.asarray(values).reshape(-1).view(dtype) if len(values) else np.empty(0, dtype=dtype)

@@ -14,7 +14,7 @@ from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage
 
 _COLOR_ENCODINGS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "mono8": 1}
-_DEPTH_ENCODINGS = {"32FC1": np.dtype(np.float32), "16UC1": np.dtype(np.uint16)}
+_DEPTH_ENCODINGS: dict[str, "np.dtype[Any]"] = {"32FC1": np.dtype(np.float32), "16UC1": np.dtype(np.uint16)}
 _MILLIMETRES_PER_METRE = 1000.0
 _BIG_ENDIAN_HERE = sys.byteorder == "big"
 
@@ -125,7 +125,9 @@ def _rows(message: Any, dtype: "np.dtype[Any]", channels: int) -> NDArray[Any]:
         raise BadMessageError(f"a {where} has step {step}; a row needs at least {row_bytes} bytes")
     data = from_array(message.data, np.uint8)
     if data.size != height * step:
-        raise BadMessageError(f"a {where} has {data.size} bytes of data; step {step} asks for {height * step}")
+        raise BadMessageError(
+            f"a {where} has {data.size} bytes of data; step {step} asks for {height * step}"
+        )
     samples = np.ascontiguousarray(data.reshape(height, step)[:, :row_bytes]).view(dtype)
     if bool(message.is_bigendian) != _BIG_ENDIAN_HERE and dtype.itemsize > 1:
         samples = samples.byteswap()

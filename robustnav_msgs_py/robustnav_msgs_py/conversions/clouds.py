@@ -134,7 +134,9 @@ def _from_cloud(message: Any, dtype: "np.dtype[Any]") -> NDArray[Any]:
         raise BadMessageError(f"a point cloud has point_step {step}, too short for its own fields")
     data = from_array(message.data, np.uint8)
     if data.size != count * step:
-        raise BadMessageError(f"a point cloud of {count} points of {step} bytes has {data.size} bytes of data")
+        raise BadMessageError(
+            f"a point cloud of {count} points of {step} bytes has {data.size} bytes of data"
+        )
     names = list(_layout(dtype))
     padded = np.dtype(
         {

@@ -21,7 +21,8 @@ def map_to_message(grid: OccupancyMap) -> OccupancyGrid:
         width=grid.width,
         height=grid.height,
         origin=Pose(
-            position=Point(x=float(grid.origin.x_m), y=float(grid.origin.y_m), z=0.0), orientation=quaternion(0.0)
+            position=Point(x=float(grid.origin.x_m), y=float(grid.origin.y_m), z=0.0),
+            orientation=quaternion(0.0),
         ),
     )
     return OccupancyGrid(header=header(grid.stamp_ns, grid.frame_id), info=info, data=to_array(grid.cells))

@@ -74,6 +74,8 @@ def detections_to_markers(detections: Detections, labels: Sequence[str], lifetim
         name = f"{labels[detections.label[index]]} {detections.score[index]:.2f}"
         markers.append(Marker(ns="place", type=Marker.SPHERE, scale=ball, **shared))
         markers.append(
-            Marker(ns="name", type=Marker.TEXT_VIEW_FACING, scale=Vector3(z=_TEXT_HEIGHT_M), text=name, **shared)
+            Marker(
+                ns="name", type=Marker.TEXT_VIEW_FACING, scale=Vector3(z=_TEXT_HEIGHT_M), text=name, **shared
+            )
         )
     return MarkerArray(markers=markers)

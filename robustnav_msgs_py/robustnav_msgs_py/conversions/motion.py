@@ -86,7 +86,9 @@ def velocity_from_message(message: Any) -> Velocity:
 
 def path_to_message(poses: Sequence[Pose2D], stamp_ns: int, frame_id: str = "map") -> Path:
     """A path through `poses`; no poses is an empty path."""
-    stamped = [pose_to_message(StampedPose(pose=pose, stamp_ns=stamp_ns, frame_id=frame_id)) for pose in poses]
+    stamped = [
+        pose_to_message(StampedPose(pose=pose, stamp_ns=stamp_ns, frame_id=frame_id)) for pose in poses
+    ]
     return Path(header=header(stamp_ns, frame_id), poses=stamped)
 
 

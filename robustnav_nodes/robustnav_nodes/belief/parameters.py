@@ -15,7 +15,7 @@ class BeliefParameters(SearchSpaceParameters):
         0.5, "standard deviation of a detected place on the floor", unit="m", low=0.05, high=5.0
     )
     detection_floor: float = parameter(
-        0.1,
+        0.02,
         "weight of a place far from a detection over one at it; from 1 / (the planner's confidence) upwards, "
         "one detection alone does not end a search that has only begun",
         low=1e-6,

@@ -24,7 +24,7 @@ class Dials:
                 raise BadParameterError(f"dial {name} is {value!r}; it must lie in 0..1")
         if self.precision == 0.0 or self.range_max_m <= 0.0:
             raise BadParameterError(
-                f"dials precision ({self.precision!r}) and range_max_m ({self.range_max_m!r}) must be positive"
+                f"dials precision ({self.precision!r}) and range_max_m ({self.range_max_m!r}) must be above 0"
             )
 
     @property
@@ -50,7 +50,9 @@ def dials_by_class(parameters: DetectionParameters, labels: Sequence[str]) -> di
     for line in parameters.class_dials:
         label, settings = _read_line(line)
         if label not in dials:
-            raise BadParameterError(f"class_dials has {line!r}; known classes are {', '.join(sorted(labels))}")
+            raise BadParameterError(
+                f"class_dials has {line!r}; known classes are {', '.join(sorted(labels))}"
+            )
         dials[label] = replace(common, **settings)
     return dials
 
@@ -68,6 +70,7 @@ def _read_line(line: str) -> tuple[str, dict[str, float]]:
     unknown = settings.keys() - set(Dials.__dataclass_fields__)
     if unknown or not label or not settings:
         raise BadParameterError(
-            f"class_dials has {line!r}; write 'CLASS DIAL=NUMBER ...' with dials {', '.join(Dials.__dataclass_fields__)}"
+            f"class_dials has {line!r}; write 'CLASS DIAL=NUMBER ...' "
+            f"with dials {', '.join(Dials.__dataclass_fields__)}"
         )
     return label, settings

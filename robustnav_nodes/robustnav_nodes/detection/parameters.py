@@ -12,16 +12,23 @@ class DetectionParameters:
     """The back end and its dials. The dials are those of the `truth` back end, for the simulated home."""
 
     back_end: str = parameter("truth", "what looks at the images", choices=BACK_ENDS)
-    seed: int = parameter(1, "decides which objects are missed and imagined from where", low=0, high=2**31 - 1)
+    seed: int = parameter(
+        1, "decides which objects are missed and imagined from where", low=0, high=2**31 - 1
+    )
 
     recall: float = parameter(
         0.6, "chance that an object within the limits is detected from a pose", low=0.0, high=1.0
     )
     precision: float = parameter(0.8, "part of a class's detections that are right", low=0.05, high=1.0)
     prevalence: float = parameter(
-        0.1, "part of all views that show an object of a class; sets how often one is imagined", low=0.0, high=1.0
+        0.1,
+        "part of all views that show an object of a class; sets how often one is imagined",
+        low=0.0,
+        high=1.0,
     )
-    range_max_m: float = parameter(4.0, "farthest distance at which objects are seen", unit="m", low=0.2, high=30.0)
+    range_max_m: float = parameter(
+        4.0, "farthest distance at which objects are seen", unit="m", low=0.2, high=30.0
+    )
     visible_fraction_min: float = parameter(
         0.3, "an object must show at least this part of itself", low=0.01, high=1.0
     )

@@ -22,7 +22,7 @@ def place_boxes(
     height, width = depth.depth_m.shape
     if (width, height) != (camera.width, camera.height):
         raise BadMessageError(
-            f"the depth image has {width} x {height} pixels, camera_info says {camera.width} x {camera.height}"
+            f"the depth image has {width} x {height} pixels, camera_info {camera.width} x {camera.height}"
         )
     kept: list[int] = []
     places: list[tuple[float, float, float]] = []

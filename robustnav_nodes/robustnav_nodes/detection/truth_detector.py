@@ -71,7 +71,9 @@ class TruthDetector:
         for label, dials in enumerate(self._dials):
             chance = self._chance(_Draw.IMAGINED, label, view)
             if chance.random() < dials.p_imagined:
-                boxes.append(self._imagined_box(seen, label, distances_m <= dials.range_max_m, camera, chance))
+                boxes.append(
+                    self._imagined_box(seen, label, distances_m <= dials.range_max_m, camera, chance)
+                )
                 scores.append(chance.uniform(*IMAGINED_SCORES))
                 labels.append(label)
         return Boxes(

@@ -16,15 +16,19 @@ def explain(state: SearchState, decision: Decision | None) -> str:
         return f"I stand still because the search for the {state.target} has ended: {state.message}."
     if decision is None or decision.episode != state.episode:
         return f"I have only begun to look for the {state.target}; I have not decided anything yet."
-    most_likely = f"It is most likely near ({state.best_x_m:.1f}, {state.best_y_m:.1f}) m, with p = {state.p_best:.3f}"
+    most_likely = (
+        f"It is most likely near ({state.best_x_m:.1f}, {state.best_y_m:.1f}) m, with p = {state.p_best:.3f}"
+    )
     if decision.action == "dock":
         return f"I drive to where I believe the {state.target} is: {decision.reason}. {most_likely}."
     ranked = sorted(zip(decision.values, decision.actions, strict=True), reverse=True)
     others = ", ".join(f"{action} {value:.0f}" for value, action in ranked if action != decision.action)
     best = next((value for value, action in ranked if action == decision.action), math.nan)
     return (
-        f"In step {decision.step} I chose to {_as_verb(decision.action)}: over {decision.simulations} imagined "
-        f"searches that was worth {best:.0f}" + (f" (the others: {others}). " if others else ". ") + f"{most_likely}."
+        f"In step {decision.step} I chose to {_as_verb(decision.action)}: over {decision.simulations} "
+        f"imagined searches that was worth {best:.0f}"
+        + (f" (the others: {others}). " if others else ". ")
+        + f"{most_likely}."
     )
 
 

@@ -1,6 +1,6 @@
 """The front door: takes what the person says, decides what the robot searches for and what it answers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robustnav_msgs_py.records import Decision, DialogueState, SearchPhase, SearchState
 from robustnav_msgs_py.values import Pose2D
@@ -14,7 +14,7 @@ SHOWN_CHARS = 120
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What follows from a line: `answer` for the person, `target` for the search ("" stops it; None: as it is)."""
+    """What follows from a line: an answer, and a target for the search ("" stops it, None leaves it)."""
 
     answer: str
     target: str | None = None
@@ -51,8 +51,9 @@ class FrontDoor:
             return None
         if search.phase is SearchPhase.FOUND:
             return self._said(
-                f"I found the {search.target}: it is near x = {search.best_x_m:.1f} m, y = {search.best_y_m:.1f} m, "
-                f"and I am looking at it. It took {search.step} steps and {search.path_length_m:.1f} m."
+                f"I found the {search.target}: it is near x = {search.best_x_m:.1f} m, "
+                f"y = {search.best_y_m:.1f} m, and I am looking at it. "
+                f"It took {search.step} steps and {search.path_length_m:.1f} m."
             )
         if search.phase is SearchPhase.NOT_FOUND:
             return self._said(f"I did not find the {search.target}: {search.message}.")
@@ -63,7 +64,7 @@ class FrontDoor:
     def adopt(self, search: SearchState) -> None:
         """Take over a search that goes on already (the dialogue was started again)."""
         if not self._state.target and search.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING):
-            self._state = DialogueState(target=search.target)
+            self._state = replace(self._state, target=search.target)
 
     def hear(self, line: str, robot: Pose2D | None) -> Reaction:
         """One line of the person; `robot` is where the robot is, if known."""
@@ -73,7 +74,13 @@ class FrontDoor:
         except UnreadableLineError as error:
             reaction = Reaction(answer=str(error))
         target = self._state.target if reaction.target is None else reaction.target
-        self._state = DialogueState(target=target, last_heard=shown, last_said=reaction.answer)
+        self._state = replace(
+            self._state,
+            target=target,
+            lines_heard=self._state.lines_heard + 1,
+            last_heard=shown,
+            last_said=reaction.answer,
+        )
         return reaction
 
     def _react(self, request: Request, robot: Pose2D | None) -> Reaction:
@@ -97,21 +104,25 @@ class FrontDoor:
 
     def _find(self, thing: str) -> Reaction:
         if not self._names:
-            return Reaction(answer="I cannot look for anything yet: my detector has not started. Ask me again soon.")
+            return Reaction(
+                answer="I cannot look for anything yet: my detector has not started. Ask me again soon."
+            )
         name = matching_class(thing, self._names)
         if name is None:
             return Reaction(answer=f"I do not know what {_quoted(thing)} looks like. {self._offer()}")
+        under_way = self._search.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING)
+        if under_way and name == self._search.target == self._state.target:
+            return Reaction(answer=f"I am still looking for the {name}.")
         return Reaction(answer=f"I am looking for the {name}.", target=name)
 
     def _offer(self) -> str:
         if not self._names:
             return "Ask me to find something, such as: find the mug."
-        return f"I can find: {listed(self._names, self._parameters.max_names)}. Say, for example: find the {self._names[0]}."
+        names = listed(self._names, self._parameters.max_names)
+        return f"I can find: {names}. Say, for example: find the {self._names[0]}."
 
     def _said(self, line: str) -> str:
-        self._state = DialogueState(
-            target=self._state.target, last_heard=self._state.last_heard, last_said=line
-        )
+        self._state = replace(self._state, last_said=line)
         return line
 
 

@@ -31,9 +31,7 @@ class Dialogue(GraphNode[DialogueParameters]):
         self._state = self.publisher("dialogue/state")
         self.subscribe("chat/from_user", wire.text_from_message, self._on_line)
         self.subscribe("detections/labels", wire.labels_from_message, self._door.hear_names)
-        self.subscribe(
-            "search/state", partial(wire.record_from_message, kind=SearchState), self._on_search
-        )
+        self.subscribe("search/state", partial(wire.record_from_message, kind=SearchState), self._on_search)
         self.subscribe(
             "planner/decision", partial(wire.record_from_message, kind=Decision), self._door.hear_decision
         )
@@ -54,8 +52,8 @@ class Dialogue(GraphNode[DialogueParameters]):
             self._say(news)
 
     def _say(self, line: str) -> None:
-        self._answers.publish(wire.text_to_message(line))
         self._state.publish(wire.record_to_message(self._door.state, summary=line))
+        self._answers.publish(wire.text_to_message(line))
 
 
 def main() -> int:

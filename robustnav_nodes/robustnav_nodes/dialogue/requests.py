@@ -35,7 +35,8 @@ class UnreadableLineError(RobustnavError):
 
 _FIND = re.compile(
     r"^(?:(?:please|hey|hi|hello|ok|robot|now|then)[\s,]+)*"
-    r"(?:(?:can|could|would|will) you (?:please )?|i(?: a|')m looking for |i (?:want|need)(?: you to)? |help me )?"
+    r"(?:(?:can|could|would|will) you (?:please )?|i(?: a|')m looking for |i (?:want|need)(?: you to)? "
+    r"|help me )?"
     r"(?:(?:find|search for|look for|locate|seek|fetch|get|bring|where(?: is|'s| are))(?: me)? )?"
     r"(?P<thing>.+)$"
 )
@@ -46,12 +47,18 @@ _ARTICLES = re.compile(r"^(?:(?:the|a|an|my|our|your|some|any|that|this|one of t
 _ENDINGS = re.compile(r"(?:[\s,]*(?:please|for me|now|again|thanks|thank you))*[\s.!?]*$")
 
 _FIXED = (
-    (RequestKind.STOP, re.compile(r"^(?:please[\s,]+)?(?:stop|halt|cancel|abort|never ?mind|forget (?:it|about it))\b")),
+    (
+        RequestKind.STOP,
+        re.compile(r"^(?:please[\s,]+)?(?:stop|halt|cancel|abort|never ?mind|forget (?:it|about it))\b"),
+    ),
     (RequestKind.WHERE, re.compile(r"^(?:and )?where(?: are|'re) (?:you|we)\b")),
     (RequestKind.WHY, re.compile(r"^(?:but )?(?:why\b|what are you doing|how come)")),
     (RequestKind.THANKS, re.compile(r"^(?:thanks|thank you|thx|cheers|great|well done|perfect)\b")),
     (RequestKind.HELP, re.compile(r"^(?:help|what can you (?:do|find)|what do you know)[\s?!.]*$")),
-    (RequestKind.GREETING, re.compile(r"^(?:hi|hello|hey|good (?:morning|afternoon|evening))[\s,!.]*(?:robot)?[\s!.]*$")),
+    (
+        RequestKind.GREETING,
+        re.compile(r"^(?:hi|hello|hey|good (?:morning|afternoon|evening))[\s,!.]*(?:robot)?[\s!.]*$"),
+    ),
 )
 
 

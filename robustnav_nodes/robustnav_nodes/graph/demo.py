@@ -106,7 +106,9 @@ class Demo:
     def _on_state(self, search: SearchState) -> None:
         before, self._search = self._search, search
         if search.phase != before.phase and search.phase is not SearchPhase.IDLE:
-            self._say(f"[bold cyan]{search.phase.replace('_', ' ')}[/] ", f"{search.target}  {search.message}")
+            self._say(
+                f"[bold cyan]{search.phase.replace('_', ' ')}[/] ", f"{search.target}  {search.message}"
+            )
         if search.episode != before.episode:
             self._shown_step = 0
 
@@ -115,7 +117,8 @@ class Demo:
             return
         self._shown_step = decision.step
         here = f"at ({decision.x_m:4.1f}, {decision.y_m:4.1f}) m"
-        likely = f"likeliest p {self._search.p_best:.3f} at ({self._search.best_x_m:.1f}, {self._search.best_y_m:.1f})"
+        best = self._search
+        likely = f"likeliest p {best.p_best:.3f} at ({best.best_x_m:.1f}, {best.best_y_m:.1f})"
         self._say(
             f"step {decision.step:3d}  ",
             f"{here}  {decision.action:10s} {likely}  in view {decision.p_in_view:.3f} of {decision.tau:.3f}"

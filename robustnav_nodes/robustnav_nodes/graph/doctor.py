@@ -56,7 +56,9 @@ def _ros() -> Finding:
     if distro not in ("", "jazzy"):
         remedy = "robustnav is made for Jazzy; other distributions are untried"
         return Finding(level=Finding.Level.NOTE, what="ROS 2", found=f"{distro}, sourced", remedy=remedy)
-    return Finding(level=Finding.Level.OK, what="ROS 2", found=f"{distro} sourced" if distro else "from wheels")
+    return Finding(
+        level=Finding.Level.OK, what="ROS 2", found=f"{distro} sourced" if distro else "from wheels"
+    )
 
 
 def _simulator() -> Finding:
@@ -97,7 +99,9 @@ def _shared_memory() -> Finding:
     left = sum(1 for item in SHM.iterdir() if item.name.startswith("fastrtps_"))
     if free_mb < SHM_NEEDED_MB:
         remedy = "fastdds shm clean; in a container: --shm-size=512m"
-        return Finding(level=Finding.Level.BAD, what="shared memory", found=f"{free_mb} MB free", remedy=remedy)
+        return Finding(
+            level=Finding.Level.BAD, what="shared memory", found=f"{free_mb} MB free", remedy=remedy
+        )
     found = f"{free_mb} MB free, {left} segments of DDS"
     return Finding(level=Finding.Level.OK, what="shared memory", found=found)
 

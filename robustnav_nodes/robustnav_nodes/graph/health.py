@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from robustnav_msgs_py.values import ERROR, OK, WARN, Status
+from robustnav_msgs_py.values import OK, WARN, Status
 
 REMEMBER_S = 10.0
 
@@ -71,4 +71,3 @@ class Health:
             return Status(name=name, level=max(worst.level, WARN), message=worst.sentence, values=values)
         message = f"waiting for {', '.join(waiting_for)}" if waiting_for else "ok"
         return Status(name=name, level=OK, message=message, values=values)
-

@@ -1,4 +1,4 @@
-"""The lifecycle manager: brings the nodes of the graph up, brings restarted ones up again, takes them down."""
+"""The lifecycle manager: brings the nodes of the graph up, also those started again, and takes them down."""
 
 import sys
 import time
@@ -36,7 +36,7 @@ class ManagerParameters:
     nodes: list[str] = parameter(MANAGED, "nodes to manage, in the order in which they come up")
     period_s: float = parameter(0.25, "how often the nodes are looked at", unit="s", low=0.05, high=10.0)
     answer_timeout_s: float = parameter(
-        10.0, "after which an unanswered question is asked again", unit="s", low=0.5, high=120.0
+        3.0, "after which an unanswered question is asked again", unit="s", low=0.5, high=120.0
     )
 
 
@@ -86,7 +86,9 @@ class ManagedNode:
             self._asked_at_s = None
             if not answer.success:
                 self._not_before_s = time.monotonic() + REFUSED_WAIT_S
-                problem(self.name, f"{self.name!r} refused a transition from {self.state_name!r}; see its log")
+                problem(
+                    self.name, f"{self.name!r} refused a transition from {self.state_name!r}; see its log"
+                )
 
         _ask(self._change_state, ChangeState.Request(transition=Transition(id=transition)), changed)
 

@@ -1,4 +1,4 @@
-"""The base of every node: life cycle, contract, parameters, diagnostics, and callbacks that cannot kill it."""
+"""The base of every node: life cycle, contract, parameters, diagnostics, callbacks that cannot kill it."""
 
 import traceback
 from collections import deque
@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -44,6 +45,7 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     A subclass names its `executable` (its rows in the contract) and its `declaration`, and overrides any of
     `configure`, `activate`, `deactivate`, `cleanup`. What these raise fails the transition with a log line.
+    One that must hear what was said before it was told to stop goes on hearing for `listen_on_s` seconds.
     Publishers, subscriptions, timers, services and workers made in `configure` are taken down at clean-up.
 
     Callbacks run in the executor's thread and only while the node is active. A RobustnavError raised there
@@ -53,6 +55,7 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     executable: ClassVar[str]
     declaration: ClassVar[type]
+    listen_on_s: ClassVar[float] = 0.0
 
     def __init__(self, **node_options: Any) -> None:
         super().__init__(self.executable, enable_logger_service=True, **node_options)
@@ -127,12 +130,14 @@ class GraphNode(LifecycleNode, Generic[P]):
             message_class(row.type),
             name,
             qos.offered(row.qos),
+            # a QoS event that is still queued when its entity is destroyed raises out of the executor
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         self._publishers_made.append(made)
         return made
 
-    def subscribe(self, name: str, read: Callable[[Any], V], use: Callable[[V], None]) -> None:
+    def subscribe(self, name: str, read: Callable[[Any], V], use: Callable[[V], object]) -> None:
         """Hear a topic of the contract: `read` makes the value (a conversion), `use` takes it.
 
         Latched messages that come before the node is active are held until it is; others are dropped.
@@ -160,6 +165,7 @@ class GraphNode(LifecycleNode, Generic[P]):
                 name,
                 hear_or_hold,
                 qos.heard(row.qos),
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # see `publisher`
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
         )
@@ -180,7 +186,9 @@ class GraphNode(LifecycleNode, Generic[P]):
                 return answer(request, response)
             except Exception as error:
                 own = not isinstance(error, RobustnavError)
-                self._refuse(response, "the node met an error of its own; its log has it" if own else str(error))
+                self._refuse(
+                    response, "the node met an error of its own; its log has it" if own else str(error)
+                )
                 self._report(name, error)
             return response
 
@@ -217,7 +225,9 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `configure`."""
-        return self._transition("configure", self.configure, lambda: super(GraphNode, self).on_configure(state))
+        return self._transition(
+            "configure", self.configure, lambda: super(GraphNode, self).on_configure(state)
+        )
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Open the publishers, then run `activate`."""
@@ -294,7 +304,7 @@ class GraphNode(LifecycleNode, Generic[P]):
     def _on_change_state(self, request: Any, response: Any) -> Any:
         # rclpy lets an impossible transition raise out of the executor, which ends the node without a reply
         try:
-            return self._LifecycleNodeMixin__on_change_state(request, response)  # type: ignore[attr-defined]
+            return self._LifecycleNodeMixin__on_change_state(request, response)
         except rclpy_implementation.RCLError as error:
             state = self._state_machine.current_state[1]
             wanted = request.transition.label or request.transition.id

@@ -23,7 +23,7 @@ class NodeParameters(Generic[P]):
         self._node = node
         self._declaration = declaration
         self._changed = changed
-        self._given = node._parameter_overrides  # rclpy has no public reader of them
+        self._given = node._parameter_overrides  # noqa: SLF001 - rclpy has no public reader of them
         self._specs = {spec.name: spec for spec in specs(declaration)}
         for spec in self._specs.values():
             self._declare(spec)
@@ -44,12 +44,14 @@ class NodeParameters(Generic[P]):
         descriptor = ParameterDescriptor(
             description=spec.full_description, additional_constraints=spec.range_text, dynamic_typing=True
         )
-        if spec.type is float:
-            descriptor.floating_point_range = [
-                FloatingPointRange(from_value=float(spec.low), to_value=float(spec.high))
-            ]
-        elif spec.type is int:
-            descriptor.integer_range = [IntegerRange(from_value=int(spec.low), to_value=int(spec.high), step=1)]
+        if spec.low is not None and spec.high is not None:
+            if spec.type is float:
+                limits = FloatingPointRange(from_value=float(spec.low), to_value=float(spec.high))
+                descriptor.floating_point_range = [limits]
+            else:
+                descriptor.integer_range = [
+                    IntegerRange(from_value=int(spec.low), to_value=int(spec.high), step=1)
+                ]
         if spec.name in self._given:
             spec.checked(self._given[spec.name].value)  # a clearer sentence than rclpy's exception
         self._node.declare_parameter(spec.name, spec.default, descriptor)

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from robustnav_msgs_py.errors import GraphError
 from robustnav_nodes.graph.executables import find_executable
@@ -11,7 +12,7 @@ from robustnav_nodes.graph.search_graph import RunPlan
 from robustnav_nodes.graph.spin import run_nodes
 
 
-def node_class(package: str, executable: str) -> type[GraphNode]:
+def node_class(package: str, executable: str) -> type[GraphNode[Any]]:
     """The node that an executable runs: the GraphNode of that name in its entry point's module."""
     main = find_executable(package, executable).load()
     for item in vars(sys.modules[main.__module__]).values():

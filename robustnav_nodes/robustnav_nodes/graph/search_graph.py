@@ -52,7 +52,8 @@ class RunPlan:
                 chosen[name]["seed"] = self.seed
         chosen["manager"]["nodes"] = [name for name in names if name != "manager"]
         if self.bag is not None:
-            chosen["recorder"] |= {"folder": str(self.bag.parent), "name": self.bag.name}
+            # a recorder that was killed goes on in the bag that it left
+            chosen["recorder"] |= {"folder": str(self.bag.parent), "name": self.bag.name, "resume": True}
         for name, values in self.parameters.items():
             if name in chosen:
                 chosen[name] |= values
@@ -63,12 +64,16 @@ class RunPlan:
 
         Raises BadFileError where a file cannot be written or read.
         """
-        content = {f"/**/{name}": {"ros__parameters": values} for name, values in self.node_parameters().items()}
+        content = {
+            f"/**/{name}": {"ros__parameters": values} for name, values in self.node_parameters().items()
+        }
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
         except OSError as error:
-            raise BadFileError(f"cannot write the run's parameters to {str(path)!r}: {error.strerror}") from error
+            raise BadFileError(
+                f"cannot write the run's parameters to {str(path)!r}: {error.strerror}"
+            ) from error
         if self.user_parameters is None:
             return (path,)
         if not self.user_parameters.is_file():

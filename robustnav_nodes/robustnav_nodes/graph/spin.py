@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import rclpy
 from lifecycle_msgs.msg import State
@@ -48,6 +49,12 @@ class Spinner:
         while not self._stopped.is_set() and rclpy.ok():
             self.executor.spin_once(timeout_sec=SPIN_PERIOD_S)
 
+    def listen(self, time_s: float) -> None:
+        """Run callbacks for a while after `stop`."""
+        end_s = time.monotonic() + time_s
+        while (left_s := end_s - time.monotonic()) > 0.0:
+            self.executor.spin_once(timeout_sec=left_s)
+
     def spin_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Run callbacks until `condition` holds (True), or the time is over or `stop` was called (False)."""
         deadline_s = time.monotonic() + timeout_s
@@ -78,7 +85,7 @@ def stop_on_signals(stop: Callable[[], None]) -> None:
     threading.Thread(target=wait, daemon=True, name="signals").start()
 
 
-def run_nodes(factories: Sequence[Callable[[], GraphNode]], argv: Sequence[str] | None = None) -> int:
+def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[str] | None = None) -> int:
     """Run one or several nodes in one executor until SIGINT or SIGTERM; returns the exit code.
 
     The nodes that were not told otherwise (`autostart`) are configured and activated; at the end they are
@@ -89,7 +96,7 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode]], argv: Sequence[str] 
     spinner = Spinner(EventsExecutor())
 
     stop_on_signals(spinner.stop)
-    nodes: list[GraphNode] = []
+    nodes: list[GraphNode[Any]] = []
     try:
         for make in factories:
             nodes.append(make())
@@ -100,6 +107,7 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode]], argv: Sequence[str] 
                 if node.state_id == State.PRIMARY_STATE_INACTIVE:
                     node.trigger_activate()
         spinner.spin()
+        spinner.listen(max(node.listen_on_s for node in nodes))
         return 0
     except RobustnavError as error:
         print(f"robustnav: {error}", file=sys.stderr)

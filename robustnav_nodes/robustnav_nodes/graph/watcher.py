@@ -8,13 +8,18 @@ from rclpy.node import Node
 
 from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
-from robustnav_msgs_py.records import Decision, SearchState
+from robustnav_msgs_py.records import Decision, DialogueState, SearchState
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.node import message_class
 
 
 class RunWatcher(Node):
-    """A plain node that hands each search state, decision and chat line to a function."""
+    """A plain node that hands each search state, decision and chat line to a function.
+
+    What the person says is taken from `dialogue/state`, as the robot heard it. A listener of its own on
+    `chat/from_user` could be found before the dialogue by `ros2 topic pub --once`, which speaks as soon as
+    it has found one.
+    """
 
     def __init__(
         self,
@@ -26,8 +31,15 @@ class RunWatcher(Node):
         super().__init__("run_watcher")
         self._hear("search/state", partial(wire.record_from_message, kind=SearchState), on_state)
         self._hear("planner/decision", partial(wire.record_from_message, kind=Decision), on_decision)
-        self._hear("chat/from_user", wire.text_from_message, partial(on_chat, "person"))
+        self._hear("dialogue/state", partial(wire.record_from_message, kind=DialogueState), self._on_dialogue)
         self._hear("chat/to_user", wire.text_from_message, partial(on_chat, "robot"))
+        self._on_chat = on_chat
+        self._lines_heard = 0
+
+    def _on_dialogue(self, dialogue: DialogueState) -> None:
+        if dialogue.lines_heard != self._lines_heard:
+            self._lines_heard = dialogue.lines_heard
+            self._on_chat("person", dialogue.last_heard)
 
     def _hear(self, name: str, read: Callable[[Any], Any], use: Callable[[Any], None]) -> None:
         row = contract.topic(name)

@@ -12,7 +12,7 @@ import numpy as np
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.records import SearchPhase, SearchState
-from robustnav_msgs_py.values import BeliefCloud, Odometry, OccupancyMap, Pose2D, StampedPose
+from robustnav_msgs_py.values import BeliefCloud, OccupancyMap, Odometry, Pose2D, StampedPose
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 from robustnav_nodes.planner.drive import allowed_time_s, has_arrived, stands
@@ -148,9 +148,9 @@ class Planner(GraphNode[PlannerParameters]):
     def _on_odometry(self, odometry: Odometry) -> None:
         if self._poses.add(odometry) and self._doing in (Doing.LOOKING, Doing.DRIVING):
             self._look(odometry.stamp_ns)  # simulated time began anew: the robot is somewhere else
-        if self._doing is Doing.DRIVING and self._goal is not None:
-            if has_arrived(odometry, self._goal, self.parameters):
-                self._look(odometry.stamp_ns)
+        driving_to = self._goal if self._doing is Doing.DRIVING else None
+        if driving_to is not None and has_arrived(odometry, driving_to, self.parameters):
+            self._look(odometry.stamp_ns)
         self._decide()
 
     def _on_cloud(self, cloud: BeliefCloud) -> None:
@@ -186,7 +186,7 @@ class Planner(GraphNode[PlannerParameters]):
         self._say_goal(step.goal)
 
     def _check(self) -> None:
-        """What only time brings: a goal that was not heard, a way that is blocked, a belief that is silent."""
+        """What only time brings: a goal that was not heard, a blocked way, a belief that is silent."""
         self.health.figure("doing", self._doing)
         waited_s = time.monotonic() - self._since_s
         if self._doing is Doing.DRIVING and self._goal is not None:

@@ -42,7 +42,7 @@ class PlannerParameters(SearchSpaceParameters):
     )
 
     docking_distance_m: float = parameter(
-        0.8, "preferred distance from the target at the end", unit="m", low=0.1, high=5.0
+        1.2, "preferred distance from the target at the end", unit="m", low=0.1, high=5.0
     )
     confirm_at_dock: bool = parameter(
         True, "look once more at the end, and search on if the target is not likely to be there"

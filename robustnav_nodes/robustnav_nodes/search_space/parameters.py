@@ -22,7 +22,11 @@ class SearchSpaceParameters:
         math.radians(60.0), "camera's full horizontal angle of view", unit="rad", low=0.05, high=math.tau
     )
     range_min_m: float = parameter(
-        0.5, "nearest distance at which objects are seen", unit="m", low=0.0, high=5.0
+        0.8,
+        "nearest distance at which objects are seen; nearer ones lie below the image",
+        unit="m",
+        low=0.0,
+        high=5.0,
     )
     range_max_m: float = parameter(
         4.0, "farthest distance at which objects are seen", unit="m", low=0.2, high=30.0

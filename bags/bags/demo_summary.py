@@ -31,7 +31,9 @@ def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs:
     table = Table(show_header=False, title=_verdict(metrics, end), title_justify="left")
     table.add_row("object", metrics.target)
     table.add_row("steps", str(metrics.steps))
-    table.add_row("path length", f"{_number(metrics.path_length_m)} m (shortest {_number(metrics.shortest_path_m)} m)")
+    table.add_row(
+        "path length", f"{_number(metrics.path_length_m)} m (shortest {_number(metrics.shortest_path_m)} m)"
+    )
     table.add_row("SPL", _number(metrics.spl))
     table.add_row("false alarms survived", str(metrics.false_alarms))
     table.add_row("time", f"{end.wall_s:.0f} s, of the search {metrics.wall_duration_s:.0f} s")

@@ -1,0 +1,136 @@
+"""The belief node: bad maps and clouds give a sentence, good ones a belief; nothing ends the node."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.values import Detections, Odometry, OccupancyMap, Pose2D
+from robustnav_nodes.belief.node import Belief
+from tests.bench import Bench
+
+S = 1_000_000_000
+
+
+def room(cells: int = 60) -> OccupancyMap:
+    """3 m x 3 m of floor, walls around it, at 0.05 m."""
+    grid = np.zeros((cells, cells), np.int8)
+    grid[0], grid[-1], grid[:, 0], grid[:, -1] = 100, 100, 100, 100
+    return OccupancyMap(cells=grid, resolution_m=0.05, origin=Pose2D(x_m=0.0, y_m=0.0))
+
+
+def table_in(floor: OccupancyMap) -> tuple[OccupancyMap, OccupancyMap]:
+    """The floor with a table on it, and the mask that says so."""
+    cells, mask = floor.cells.copy(), np.zeros_like(floor.cells)
+    cells[30:42, 40:52], mask[30:42, 40:52] = 100, 100
+    made = [
+        OccupancyMap(cells=grid, resolution_m=floor.resolution_m, origin=floor.origin) for grid in (cells, mask)
+    ]
+    return made[0], made[1]
+
+
+def nothing_detected(stamp_ns: int) -> Detections:
+    empty = np.zeros(0, np.float32)
+    return Detections(
+        position_m=empty.reshape(0, 3),
+        score=empty,
+        label=np.zeros(0, np.uint32),
+        box_px=empty.reshape(0, 4),
+        stamp_ns=stamp_ns,
+    )
+
+
+@pytest.fixture
+def node(bench: Bench) -> Belief:
+    made = bench.add(Belief())
+    made.trigger_configure()
+    made.trigger_activate()
+    return made
+
+
+def problem(node: Belief, words: str) -> Callable[[], bool]:
+    return lambda: any(words in value for value in node.health.status("n", []).values.values())
+
+
+def of_unknown_cells(message: Any) -> None:
+    message.data = b"\xff" * len(message.data)
+
+
+def of_no_size(message: Any) -> None:
+    message.info.width, message.info.height, message.data = 0, 0, b""
+
+
+def of_another_size(message: Any) -> None:
+    message.info.width = 7
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (of_unknown_cells, "free"),
+        (of_no_size, "0 x 0"),
+        (of_another_size, "7 x 60"),
+    ],
+)
+def test_a_bad_map_is_a_sentence_and_the_next_good_one_is_used(
+    bench: Bench, node: Belief, spoil: Callable[[Any], None], words: str
+) -> None:
+    maps, masks, targets = (bench.speaker(name) for name in ("map", "search/candidates", "search/target"))
+    clouds = bench.hear("belief/cloud")
+    floor, mask = table_in(room())
+    message = wire.map_to_message(floor)
+    spoil(message)
+    masks.publish(wire.map_to_message(mask))
+    maps.publish(message)
+    bench.wait(problem(node, words), f"a problem that says {words!r}")
+    targets.publish(wire.text_to_message("mug"))
+    masks.publish(wire.map_to_message(mask))
+    maps.publish(wire.map_to_message(floor))
+    bench.wait(lambda: clouds, "a belief")
+    belief = wire.belief_from_message(clouds[-1])
+    assert belief.probability.sum() == pytest.approx(1.0)
+
+
+def test_a_map_of_ten_million_cells_is_used(bench: Bench, node: Belief) -> None:
+    _, mask = table_in(room())
+    clouds = bench.hear("belief/cloud")
+    wide = OccupancyMap(cells=np.zeros((2000, 5000), np.int8), resolution_m=0.05, origin=mask.origin)
+    bench.speaker("search/candidates").publish(wire.map_to_message(mask))
+    bench.speaker("search/target").publish(wire.text_to_message("mug"))
+    bench.speaker("map").publish(wire.map_to_message(wide))
+    bench.wait(lambda: clouds, "a belief")
+
+
+def test_looking_without_success_moves_the_belief(bench: Bench, node: Belief) -> None:
+    floor, mask = table_in(room())
+    clouds = bench.hear("belief/cloud")
+    speakers = {
+        name: bench.speaker(name)
+        for name in ("map", "search/candidates", "search/target", "odom", "detections", "detections/labels")
+    }
+    speakers["search/candidates"].publish(wire.map_to_message(mask))
+    speakers["map"].publish(wire.map_to_message(floor))
+    speakers["detections/labels"].publish(wire.labels_to_message(("mug",)))
+    speakers["search/target"].publish(wire.text_to_message("mug"))
+    bench.wait(lambda: clouds, "the first belief")
+    assert clouds[-1].header.stamp.sec == 0
+    facing_half_of_the_table = Odometry(
+        pose=Pose2D(x_m=0.6, y_m=2.2, yaw_rad=0.25), linear_m_s=0.0, angular_rad_s=0.0, stamp_ns=5 * S
+    )
+    speakers["odom"].publish(wire.odometry_to_message(facing_half_of_the_table))
+    bench.wait(lambda: node._poses.latest, "the odometry")
+    speakers["detections"].publish(wire.detections_to_message(nothing_detected(5 * S)))
+    bench.wait(lambda: clouds[-1].header.stamp.sec == 5, "the belief after the view")
+    before, after = (wire.belief_from_message(message).probability for message in (clouds[0], clouds[-1]))
+    assert np.ptp(before) == 0.0
+    assert np.ptp(after) > 0.0
+
+
+def test_a_belief_without_a_target_is_an_empty_map(bench: Bench, node: Belief) -> None:
+    from nav_msgs.srv import GetMap
+    from std_srvs.srv import Trigger
+
+    assert bench.call(GetMap, "belief/get_map", GetMap.Request()).map.info.width == 0
+    assert "no target" in bench.call(Trigger, "belief/reset", Trigger.Request()).message

@@ -1,0 +1,119 @@
+"""Each node starts alone, waits for its inputs without complaint, describes its parameters, stops cleanly."""
+
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.srv import DescribeParameters, ListParameters
+
+from robustnav_msgs_py import contract
+from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.parameters import specs
+from robustnav_msgs_py.values import OK
+from robustnav_nodes.graph.one_process import node_class
+from tests.bench import Bench
+
+DEADLINE_S = 30.0
+ROWS = [row for row in contract.NODES if row.executable != "manager"]
+
+
+@contextmanager
+def running(package: str, executable: str, *arguments: str) -> Iterator["subprocess.Popen[str]"]:
+    """A node's process, as `robustnav run` starts it; killed if a test leaves it running."""
+    command = [sys.executable, "-m", "robustnav_nodes", "run", package, executable, "--ros-args", *arguments]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    watchdog = threading.Timer(2 * DEADLINE_S, process.kill)
+    watchdog.start()
+    try:
+        yield process
+    finally:
+        watchdog.cancel()
+        process.kill()
+        process.communicate()
+
+
+def wait_for_line(process: "subprocess.Popen[str]", words: str) -> None:
+    assert process.stdout is not None
+    heard = []
+    for line in process.stdout:
+        heard.append(line)
+        if words in line:
+            return
+    raise AssertionError(f"{words!r} never came; the process said: {''.join(heard)}")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.executable)
+def test_a_node_alone(row: contract.NodeRow, number: signal.Signals, bench: Bench, tmp_path: Path) -> None:
+    where = ["-p", f"folder:={tmp_path}"] if row.executable == "recorder" else []
+    with running(row.package, row.executable, *where) as process:
+        wait_for_line(process, f"{row.executable} is active")
+        if number is signal.SIGINT:  # once for each node is enough
+            check_parameters(bench, row)
+            check_health(bench, row)
+        process.send_signal(number)
+        output, _ = process.communicate(timeout=DEADLINE_S)
+        assert process.returncode == 0, output
+        assert "Traceback" not in output
+
+
+def check_parameters(bench: Bench, row: contract.NodeRow) -> None:
+    """What the declaration says is what a caller is told."""
+    told = bench.call(ListParameters, f"{row.executable}/list_parameters", ListParameters.Request())
+    declared = {spec.name: spec for spec in specs(node_class(row.package, row.executable).declaration)}
+    assert set(declared) <= set(told.result.names)
+    request = DescribeParameters.Request(names=list(declared))
+    for described in bench.call(
+        DescribeParameters, f"{row.executable}/describe_parameters", request
+    ).descriptors:
+        spec = declared[described.name]
+        assert described.description == spec.full_description
+        ranges = [*described.floating_point_range, *described.integer_range]
+        assert [(item.from_value, item.to_value) for item in ranges] == (
+            [(spec.low, spec.high)] if spec.low is not None else []
+        )
+
+
+def check_health(bench: Bench, row: contract.NodeRow) -> None:
+    """It says what it waits for, and that this is no problem."""
+    statuses: list[Any] = []
+
+    def hear(message: Any) -> None:
+        found = [wire.status_from_message(status) for status in message.status]
+        statuses.extend(status for status in found if status.name == f"/{row.executable}")
+
+    bench.outside.create_subscription(DiagnosticArray, "/diagnostics", hear, 10)
+    bench.wait(lambda: statuses, "diagnostics")
+    assert statuses[-1].level == OK, statuses[-1]
+
+
+def test_a_parameter_out_of_range_is_a_sentence_and_an_exit_code() -> None:
+    with running("robustnav_nodes", "planner", "-p", "discount:=1.5") as process:
+        output, _ = process.communicate(timeout=DEADLINE_S)
+    assert process.returncode == 2
+    assert output.strip().endswith("parameter 'discount' is 1.5; it must lie in 0.01 .. 0.999999")
+    assert "Traceback" not in output
+
+
+def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way", encoding="utf-8")
+    with running("bags", "recorder", "-p", f"folder:={tmp_path}/file/bags") as process:
+        wait_for_line(process, f"{tmp_path}/file")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=DEADLINE_S)
+    assert process.returncode == 0
+
+
+def test_an_executable_that_does_not_exist_is_a_sentence() -> None:
+    with running("robustnav_nodes", "plannner") as process:
+        output, _ = process.communicate(timeout=DEADLINE_S)
+    assert process.returncode == 1
+    assert "robustnav_nodes planner" in output
+    assert "Traceback" not in output
