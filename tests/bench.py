@@ -29,9 +29,9 @@ class Bench:
         self.spinner.executor.add_node(node)
         return node
 
-    def wait(self, condition: Callable[[], Any], what: str) -> None:
+    def wait(self, condition: Callable[[], Any], what: str, timeout_s: float = DEADLINE_S) -> None:
         """Spin until `condition` holds."""
-        assert self.spinner.spin_until(condition, DEADLINE_S), f"waited in vain for {what}"
+        assert self.spinner.spin_until(condition, timeout_s), f"waited in vain for {what}"
 
     def call(self, service_type: Any, name: str, request: Any) -> Any:
         """Call a service and wait for the answer."""

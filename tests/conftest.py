@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 # Fast DDS uses UDP ports from 7400 + 250 * domain; these domains stay below Linux' ephemeral ports.
 DOMAINS = range(20, 100)
+MARK = "ROBUSTNAV_TEST_RUN"
 
 
 def _is_free(domain: int) -> bool:
@@ -43,23 +44,25 @@ def ros_domain(tmp_path_factory: pytest.TempPathFactory) -> int:
 
 @pytest.fixture(scope="session", autouse=True)
 def nothing_left_behind(ros_domain: int) -> Iterator[None]:
-    """No process in our domain outlives the run; segments of those killed on purpose are cleaned."""
+    """No process that this run started outlives it; segments of those killed on purpose are cleaned."""
+    os.environ[MARK] = f"{os.getpid()} in domain {ros_domain}"  # children inherit it
     yield
     from robustnav_nodes.graph.shared_memory import clean_shared_memory
 
-    left = [process for process in _processes_in(ros_domain) if process != os.getpid()]
+    left = [process for process in _marked_processes() if process != os.getpid()]
     clean_shared_memory()
     assert not left, f"processes {left} are still running"
 
 
-def _processes_in(domain: int) -> list[int]:
+def _marked_processes() -> list[int]:
+    mark = f"{MARK}={os.environ[MARK]}".encode()
     found = []
     for process in Path("/proc").iterdir():
         try:
             variables = (process / "environ").read_bytes().split(b"\0") if process.name.isdigit() else []
         except OSError:  # it has just ended, or is somebody else's
             continue
-        if f"ROS_DOMAIN_ID={domain}".encode() in variables:
+        if mark in variables:
             found.append(int(process.name))
     return found
 

@@ -93,25 +93,24 @@ def repair_earlier_files(paths: Sequence[Path]) -> EarlierFiles:
         except (BadFileError, OSError) as error:
             problems.append(f"{path} was cut and cannot be repaired: {error}")
         try:
-            file = McapFile(path)
+            file, rows = _counted(path)
         except BadFileError as error:
             problems.append(f"{path} is left out of the bag: {error}")
             continue
-        with contextlib.closing(file):
-            start_ns, stop_ns = file.span_ns or (0, 0)
-            rows = [channel.row for channel in file.channels]
-        files.append(
-            FileRow(
-                name=path.name,
-                start_ns=start_ns,
-                duration_ns=stop_ns - start_ns,
-                message_count=sum(row.message_count for row in rows),
-            )
-        )
+        files.append(file)
         topics.extend(rows)
     return EarlierFiles(
         files=tuple(files), topics=joined(topics), repairs=tuple(repairs), problems=tuple(problems)
     )
+
+
+def _counted(path: Path) -> tuple[FileRow, list[TopicRow]]:
+    with contextlib.closing(McapFile(path)) as file:
+        rows = [channel.row for channel in file.channels]
+        start_ns, stop_ns = file.span_ns or (0, 0)
+    count = sum(row.message_count for row in rows)
+    told = FileRow(name=path.name, start_ns=start_ns, duration_ns=stop_ns - start_ns, message_count=count)
+    return told, rows
 
 
 def _number(folder: Path, path: Path) -> int | None:

@@ -30,6 +30,7 @@ from mcap.records import (
 from bags.mcap_scan import (
     FOOTER,
     MAGIC,
+    PROFILE,
     RECORD_HEADER,
     ChunkContents,
     WholeRecord,
@@ -42,8 +43,8 @@ FOOTER_BEFORE_CHECKSUM = struct.Struct("<BQQQ")
 class McapRewriter:
     """Writes a file from whole records: chunks, metadata and attachments are copied as they are.
 
-    mcap's own writer takes messages only one by one, and compresses them again: minutes for what takes
-    seconds. Owned by one thread; `take` the records of a data section in their order, then `finish`.
+    mcap's own writer takes messages only one by one, and compresses them again: seven times as slow. Owned by
+    one thread; `take` the records of a data section in their order, then `finish`.
     `lost_messages` are those that nothing defines the topic of.
     """
 
@@ -122,7 +123,7 @@ class McapRewriter:
 
     def _write_missing_header(self) -> None:
         if not self._has_header:
-            self._output.write(_bytes_of(Header(profile="", library="")))
+            self._output.write(_bytes_of(Header(profile=PROFILE, library="")))
             self._has_header = True
 
     def _take_chunk(self, raw: bytes, chunk: Chunk, contents: ChunkContents) -> None:

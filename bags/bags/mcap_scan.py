@@ -19,6 +19,7 @@ from zstandard import ZstdError
 from robustnav_msgs_py.errors import BadFileError
 
 MAGIC = b"\x89MCAP0\r\n"
+PROFILE = "ros2"  # in the header of a file that holds ROS 2 messages
 RECORD_HEADER = struct.Struct("<BQ")  # kind, length
 MESSAGE_HEADER = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 FOOTER = struct.Struct("<BQQQI")  # kind, length, begin of the summary, of its offsets, checksum of all before

@@ -51,9 +51,8 @@ class Recorder(GraphNode[RecorderParameters]):
 
     executable: ClassVar[str] = "recorder"
     declaration: ClassVar[type] = RecorderParameters
-    listen_on_s: ClassVar[float] = (
-        0.5  # what was said when the end came is on its way, and belongs to the run
-    )
+    # What was said when the end came is on its way, and belongs to the run.
+    listen_on_s: ClassVar[float] = 0.5
 
     def __init__(self, **node_options: Any) -> None:
         super().__init__(**node_options)

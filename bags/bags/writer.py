@@ -22,10 +22,10 @@ from bags.earlier_files import (
     repair_earlier_files,
 )
 from bags.manifest import Manifest
+from bags.mcap_scan import PROFILE
 from bags.offered_qos import OfferedQos, offers_as_text
 from robustnav_msgs_py.errors import BadFileError
 
-PROFILE = "ros2"
 MANIFEST_RECORD = "robustnav_manifest"
 MANIFEST_ATTACHMENT = "robustnav_manifest.json"
 # Tools hold metadata records in memory as soon as they open a file; attachments are read when asked for.

@@ -163,7 +163,7 @@ TOPICS = (
         type="visualization_msgs/msg/MarkerArray",
         qos=LATCHED,
         speakers=("sim_bridge",),
-        listeners=("detection", "simulated_user"),
+        listeners=("simulated_user",),
         meaning="ground truth: every object of the home",
     ),
     Topic(
@@ -219,7 +219,7 @@ TOPICS = (
         type="sensor_msgs/msg/PointCloud2",
         qos=SENSOR,
         speakers=("detection",),
-        listeners=("belief", "dialogue"),
+        listeners=("belief",),
         meaning="one point per detection: place, score, label, box",
     ),
     Topic(

@@ -52,7 +52,7 @@ def demo(
     ] = 1,
     bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/demo_DATE")] = None,
     target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
-    speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds per second")] = 2.0,
+    speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds per second")] = 4.0,
 ) -> None:
     """Run one search in a simulated home, record it, and sum it up from the bag."""
     from bags.demo_summary import show_summary

@@ -1,5 +1,6 @@
 """The recorder in a real graph: nothing that was said on a topic it hears is missing from the bag."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -18,6 +19,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String, UInt64
 
@@ -254,6 +256,15 @@ def test_a_bag_that_exists_is_left_alone(graph: Graph) -> None:
     assert "is not overwritten" in recorder.health.status("", []).message
 
 
+def test_a_bag_that_was_closed_is_left_alone_even_with_resume(graph: Graph) -> None:
+    graph.recorder().destroy_node()
+    before = {path: path.read_bytes() for path in (graph.bags / "run").iterdir()}
+    recorder = graph.recorder(resume=True)
+    assert recorder.state_id == State.PRIMARY_STATE_INACTIVE
+    assert "was closed properly" in recorder.health.status("", []).message
+    assert {path: path.read_bytes() for path in (graph.bags / "run").iterdir()} == before
+
+
 def test_topics_can_be_chosen(graph: Graph) -> None:
     recorder = graph.recorder(include="/a.*|/b", exclude="/a/secret")
     node = graph.node("talker")
@@ -317,3 +328,46 @@ def test_a_recorder_that_is_told_to_stop_closes_its_bag(graph: Graph, number: si
         assert data_of(bag, "/numbers") == list(range(50))
         assert bag.metadata is not None
         assert bag.metadata.message_count == sum(row.message_count for row in bag.topics)
+
+
+def test_a_recorder_that_was_killed_goes_on_in_its_bag(graph: Graph) -> None:
+    parameters = {"folder": graph.bags, "name": "run", "resume": True, "flush_period_s": 0.1}
+    arguments = [part for name, value in parameters.items() for part in ("-p", f"{name}:={value}")]
+    publisher = graph.node("talker").create_publisher(UInt64, "numbers", 1000)
+    said = itertools.count()
+    flushed = []
+    for run, end in enumerate((signal.SIGKILL, signal.SIGINT)):
+        process = graph.process("-m", "bags.recorder", "--ros-args", *arguments)
+
+        def hears_enough(path: Path = graph.bags / "run" / f"run_{run}.mcap") -> bool:
+            for value in itertools.islice(said, 10):
+                publisher.publish(UInt64(data=value))
+            return len(numbers_in(path)) >= 50
+
+        graph.until(hears_enough)
+        flushed.append(numbers_in(graph.bags / "run" / f"run_{run}.mcap"))
+        process.send_signal(end)
+        assert process.wait(LIMIT_S) == (0 if end == signal.SIGINT else -end)
+    with open_bag(graph.bags / "run") as bag:
+        assert bag.cut == ""
+        numbers = data_of(bag, "/numbers")
+        counts = {row.name: row.message_count for row in bag.topics}
+        assert bag.metadata is not None
+        assert [row.name for row in bag.metadata.files] == ["run_0.mcap", "run_1.mcap"]
+        assert bag.metadata.message_count == sum(counts.values()) == sum(1 for _ in bag.raw_messages())
+        assert bag.manifest is not None
+    for before in flushed:
+        begin = numbers.index(before[0])
+        assert numbers[begin : begin + len(before)] == before == list(range(before[0], before[-1] + 1))
+    assert numbers == sorted(set(numbers))
+    with Reader(graph.bags / "run") as reader:
+        assert {topic: told.msgcount for topic, told in reader.topics.items()} == counts
+        assert reader.message_count == sum(1 for _ in reader.messages())
+
+
+def numbers_in(path: Path) -> list[int]:
+    """What is on the disk so far of a file that may be being written."""
+    if not path.exists():
+        return []
+    with open_bag(path) as bag:
+        return data_of(bag, "/numbers")

@@ -1,3 +1,4 @@
+import shutil
 import sys
 import threading
 from dataclasses import replace
@@ -7,6 +8,7 @@ from typing import Any
 import pytest
 
 from bags.definitions import message_definition
+from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
 from bags.reader import open_bag
 from bags.recording import Recording
@@ -23,12 +25,20 @@ def number(value: int) -> bytes:
 class SlowWriter(BagWriter):
     """A writer whose disk stands still until `go` is set, and fails from message `fails_at` on."""
 
-    def __init__(self, folder: Path, *, manifest: Manifest, fails_at: int | None = None) -> None:
-        super().__init__(folder, manifest=manifest)
+    def __init__(
+        self, folder: Path, *, manifest: Manifest, fails_at: int | None = None, resume: bool = False
+    ) -> None:
+        super().__init__(folder, manifest=manifest, resume=resume)
+        self._resume = resume
         self.go = threading.Event()
         self.began = threading.Event()
         self._fails_at = fails_at
         self._written = 0
+
+    def join_earlier_files(self) -> EarlierFiles:
+        if self._resume:
+            self.go.wait(WAIT_S)
+        return super().join_earlier_files()
 
     def write(self, channel: int, **message: Any) -> None:
         self.began.set()
@@ -110,3 +120,27 @@ def test_the_manifest_of_a_recording_can_grow(writer: SlowWriter, manifest: Mani
     assert recording.wait(WAIT_S)
     with open_bag(writer.folder) as bag:
         assert bag.manifest == replace(manifest, seed=3)
+
+
+def test_what_is_heard_while_an_earlier_file_is_repaired_is_in_the_bag(
+    tmp_path: Path, manifest: Manifest
+) -> None:
+    killed = BagWriter(tmp_path / "alive" / "bag", manifest=manifest)
+    channel = killed.add_topic("/a", NUMBER)
+    killed.write(channel, log_time_ns=1, publish_time_ns=1, data=number(0))
+    killed.flush()
+    shutil.copytree(killed.folder, tmp_path / "bag")
+    killed.close()
+    writer = SlowWriter(tmp_path / "bag", manifest=manifest, resume=True)
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=0.1)
+    channel = recording.add_topic("/a", NUMBER)
+    assert all(recording.put(channel, value + 1, number(value)) for value in range(1, 100))
+    assert recording.earlier is None
+    writer.go.set()
+    recording.finish()
+    assert recording.wait(WAIT_S)
+    assert recording.earlier is not None
+    assert len(recording.earlier.repairs) == 1
+    with open_bag(tmp_path / "bag") as bag:
+        assert [recorded.message.data for recorded in bag.messages()] == list(range(100))
+        assert bag.cut == ""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py import conversions as wire
-from robustnav_msgs_py.values import Detections, Odometry, OccupancyMap, Pose2D
+from robustnav_msgs_py.values import Detections, OccupancyMap, Odometry, Pose2D
 from robustnav_nodes.belief.node import Belief
 from tests.bench import Bench
 
@@ -26,7 +26,8 @@ def table_in(floor: OccupancyMap) -> tuple[OccupancyMap, OccupancyMap]:
     cells, mask = floor.cells.copy(), np.zeros_like(floor.cells)
     cells[30:42, 40:52], mask[30:42, 40:52] = 100, 100
     made = [
-        OccupancyMap(cells=grid, resolution_m=floor.resolution_m, origin=floor.origin) for grid in (cells, mask)
+        OccupancyMap(cells=grid, resolution_m=floor.resolution_m, origin=floor.origin)
+        for grid in (cells, mask)
     ]
     return made[0], made[1]
 

@@ -140,5 +140,7 @@ def test_a_camera_that_does_not_match_is_a_sentence(scene: Scene) -> None:
     scene.show(S, depth(S))
     scene.expect_problem("640 x 24")
     scene.say["camera/camera_info"](wire.camera_to_message(camera()))
-    scene.bench.wait(lambda: scene.node._camera is not None and scene.node._camera.width == WIDTH, "the model")
+    scene.bench.wait(
+        lambda: scene.node._camera is not None and scene.node._camera.width == WIDTH, "the model"
+    )
     scene.expect_mug(S + 1)

@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import DescribeParameters, ListParameters
+from rclpy.node import NodeNameNonExistentError
 
 from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
@@ -21,6 +22,7 @@ from robustnav_nodes.graph.one_process import node_class
 from tests.bench import Bench
 
 DEADLINE_S = 30.0
+OF_EVERY_NODE = {"/parameter_events", "/rosout"}
 ROWS = [row for row in contract.NODES if row.executable != "manager"]
 
 
@@ -56,12 +58,40 @@ def test_a_node_alone(row: contract.NodeRow, number: signal.Signals, bench: Benc
     with running(row.package, row.executable, *where) as process:
         wait_for_line(process, f"{row.executable} is active")
         if number is signal.SIGINT:  # once for each node is enough
+            check_contract(bench, row)
             check_parameters(bench, row)
             check_health(bench, row)
         process.send_signal(number)
         output, _ = process.communicate(timeout=DEADLINE_S)
         assert process.returncode == 0, output
         assert "Traceback" not in output
+
+
+def check_contract(bench: Bench, row: contract.NodeRow) -> None:
+    """Its topics are those that the contract lists, with their types: no more, no fewer."""
+
+    def found(names_and_types: Callable[[str, str], list[tuple[str, list[str]]]]) -> dict[str, str]:
+        try:
+            every = dict(names_and_types(row.executable, "/"))
+        except NodeNameNonExistentError:  # not discovered yet
+            return {}
+        return {name: types[0] for name, types in every.items() if name not in OF_EVERY_NODE}
+
+    def listed(topics: tuple[contract.Topic, ...]) -> dict[str, str]:
+        return {f"/{topic.name.lstrip('/')}": topic.type for topic in topics}
+
+    says, hears = listed(contract.spoken_by(row.executable)), listed(contract.heard_by(row.executable))
+    outside = bench.outside
+    bench.wait(
+        lambda: found(outside.get_publisher_names_and_types_by_node).keys() >= says.keys(), "its topics"
+    )
+    bench.wait(
+        lambda: found(outside.get_subscriber_names_and_types_by_node).keys() >= hears.keys(), "its ears"
+    )
+    said = found(outside.get_publisher_names_and_types_by_node)
+    assert {name: kind for name, kind in said.items() if not name.endswith("/transition_event")} == says
+    if row.executable != "recorder":  # which hears whatever there is
+        assert found(outside.get_subscriber_names_and_types_by_node) == hears
 
 
 def check_parameters(bench: Bench, row: contract.NodeRow) -> None:

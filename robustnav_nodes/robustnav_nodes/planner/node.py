@@ -172,11 +172,11 @@ class Planner(GraphNode[PlannerParameters]):
     def _on_step(self, session: SearchSession, step: NextStep) -> None:
         if session is not self._session:
             return  # stopped or begun anew while it was thinking
+        self._say_state(step.state)
         if step.decision is not None:
             self._decision.publish(wire.record_to_message(step.decision, summary=step.decision.reason))
             self.health.figure("last decision took ms", step.decision.elapsed_ms)
         self._plan.publish(wire.path_to_message(step.path, self.now_ns()))
-        self._say_state(step.state)
         here = self._poses.latest
         if step.goal is None or here is None:
             self._doing, self._goal = Doing.NOTHING, None
