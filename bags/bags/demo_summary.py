@@ -23,12 +23,13 @@ def show_summary(console: Console, end: DemoEnd, bag: Path, logs: Path) -> bool:
         console.print("[red]no summary:[/] ", end="")
         console.print(f"{error}; the nodes' logs are in {logs}", markup=False)
         return False
+    console.print(_verdict(metrics, end))
     console.print(_table(metrics, end, bag, picture, logs))
     return metrics.success is True
 
 
 def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs: Path) -> Table:
-    table = Table(show_header=False, title=_verdict(metrics, end), title_justify="left")
+    table = Table(show_header=False)
     table.add_row("object", metrics.target)
     table.add_row("steps", str(metrics.steps))
     table.add_row(

@@ -15,7 +15,15 @@ class RecorderParameters:
         False, "go on in the bag of this name that a killed recorder left; it is refused otherwise"
     )
     include: str = parameter(".*", "regular expression; topics that match it wholly are recorded")
-    exclude: str = parameter("", "regular expression; topics that match it wholly are left out")
+    exclude: str = parameter(
+        ".*/detections/boxes",
+        "regular expression; topics that match it wholly are left out; boxes are drawn only while heard",
+    )
+    patient: str = parameter(
+        ".*/chat/from_user",
+        "regular expression; topics on which people say one thing and leave: heard a little later",
+    )
+    patience_s: float = parameter(1.0, "how much later", unit="s", low=0.0, high=60.0)
     chunk_size_bytes: int = parameter(
         1_048_576, "size at which a chunk is compressed and written", unit="B", low=1024, high=268_435_456
     )

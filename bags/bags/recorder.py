@@ -72,6 +72,7 @@ class Recorder(GraphNode[RecorderParameters]):
         parameters = self.parameters
         _pattern("include", parameters.include)
         _pattern("exclude", parameters.exclude)
+        _pattern("patient", parameters.patient)
         self.every(parameters.discovery_period_s, self._discover, steady=True)
         self.every(FIGURES_PERIOD_S, self._show_figures, steady=True)
         self.every(MANIFEST_PERIOD_S, self._note_manifest, steady=True)
@@ -99,6 +100,8 @@ class Recorder(GraphNode[RecorderParameters]):
             self._recording,
             include=_pattern("include", parameters.include),
             exclude=_pattern("exclude", parameters.exclude) if parameters.exclude else None,
+            patient=_pattern("patient", parameters.patient),
+            patience_s=parameters.patience_s,
             depth=parameters.depth,
             observer_of=self._observer_of,
             say=self.health.problem,

@@ -43,6 +43,8 @@ class TopicListener:
     the same channel, when one appears. Who speaks only once (`ros2 topic pub --once`) does so as soon as one
     listener is found: a recorder that still listens since an earlier speaker could be that one, and the node
     that was spoken to would not hear a word. Latched topics are kept: whoever comes late has them anyway.
+    For the same reason topics that match `patient` are heard only `patience_s` after their first speaker
+    appeared; what is said in one breath before that is not recorded (the dialogue tells what it heard).
 
     Log times are wall-clock times at which a message was taken, as rosbag2 has them without simulated time;
     a message's source time is not known, since rclpy's EventsExecutor cannot hand it out.
@@ -59,6 +61,8 @@ class TopicListener:
         *,
         include: re.Pattern[str],
         exclude: re.Pattern[str] | None,
+        patient: re.Pattern[str],
+        patience_s: float,
         depth: int,
         observer_of: Callable[[str, str], Observer | None],
         say: Callable[[str, str], None],
@@ -67,6 +71,7 @@ class TopicListener:
         self._node = node
         self._recording = recording
         self._include, self._exclude = include, exclude
+        self._patient, self._patience_s = patient, patience_s
         self._depth = depth
         self._observer_of = observer_of
         self._say = say
@@ -74,6 +79,7 @@ class TopicListener:
         self._prefixes = ament_prefixes()
         self._heard: dict[tuple[str, str], _Heard] = {}
         self._refused: set[tuple[str, str]] = set()
+        self._spoken_on_since_s: dict[tuple[str, str], float] = {}
 
     def discover(self) -> None:
         """Subscribe to what is new, ask for less where publishers now offer less, let go what is forsaken."""
@@ -88,8 +94,9 @@ class TopicListener:
                     if publisher.topic_type == message_type
                 ]
                 if not offers:
+                    self._spoken_on_since_s.pop((topic, message_type), None)
                     self._forsake(topic, message_type)
-                elif (topic, message_type) not in self._refused:
+                elif (topic, message_type) not in self._refused and self._is_due(topic, message_type):
                     self._hear(topic, message_type, offers)
 
     def close(self) -> None:
@@ -97,6 +104,11 @@ class TopicListener:
         for heard in self._heard.values():
             self._unsubscribe(heard)
         self._heard.clear()
+
+    def _is_due(self, topic: str, message_type: str) -> bool:
+        """False while those that a patient topic is meant for are left the time to be found first."""
+        since_s = self._spoken_on_since_s.setdefault((topic, message_type), self._clock())
+        return not self._patient.fullmatch(topic) or self._clock() - since_s >= self._patience_s
 
     def _hear(self, topic: str, message_type: str, offers: Sequence[OfferedQos]) -> None:
         request = request_for(offers)

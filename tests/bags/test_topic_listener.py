@@ -67,35 +67,42 @@ class Room:
 
 
 @pytest.fixture
-def room(tmp_path: Path, manifest: Manifest) -> Iterator[Room]:
+def nodes() -> Iterator[tuple[Node, Node]]:
     rclpy.init()
+    try:
+        made = rclpy.create_node("ears"), rclpy.create_node("mouth")
+        yield made
+        for node in made:
+            node.destroy_node()
+    finally:
+        rclpy.try_shutdown()
+
+
+@pytest.fixture
+def room(nodes: tuple[Node, Node], tmp_path: Path, manifest: Manifest) -> Iterator[Room]:
     now_s = [0.0]
-    ears, mouth = rclpy.create_node("ears"), rclpy.create_node("mouth")
+    ears, mouth = nodes
     executor = EventsExecutor()
-    for node in (ears, mouth):
+    for node in nodes:
         executor.add_node(node)
-    recording = Recording(
-        BagWriter(tmp_path / "bag", manifest=manifest), queue_bytes=10**6, flush_period_s=1.0
-    )
+    writer = BagWriter(tmp_path / "bag", manifest=manifest)
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=1.0)
     listener = TopicListener(
         ears,
         recording,
         include=re.compile(TOPIC),
         exclude=None,
+        patient=re.compile("/patient"),
+        patience_s=FORSAKEN_AFTER_S,
         depth=100,
         observer_of=lambda *_: None,
         say=lambda *_: None,
         clock=lambda: now_s[0],
     )
-    try:
-        yield Room(listener, recording, ears, mouth, executor, now_s)
-    finally:
-        listener.close()
-        recording.finish()
-        recording.wait(LIMIT_S)
-        for node in (ears, mouth):
-            node.destroy_node()
-        rclpy.try_shutdown()
+    yield Room(listener, recording, ears, mouth, executor, now_s)
+    listener.close()
+    recording.finish()
+    recording.wait(LIMIT_S)
 
 
 def words(room: Room) -> list[str]:
@@ -145,3 +152,16 @@ def test_a_latched_topic_is_kept(room: Room) -> None:
     for _ in range(3):
         room.listener.discover()
     assert room.is_heard
+
+
+def test_a_patient_listener_lets_others_be_found_first(room: Room) -> None:
+    room.listener._patient, room.listener._patience_s = re.compile(TOPIC), 1.0
+    speaker = room.mouth.create_publisher(String, TOPIC, 10)
+    room.until(lambda: bool(room.ears.get_publishers_info_by_topic(TOPIC)))
+    room.now_s[0] += 0.9
+    room.listener.discover()
+    assert not room.is_heard
+    room.now_s[0] += 0.2
+    room.until(lambda: speaker.get_subscription_count() == 1)
+    room.say(speaker, "heard")
+    assert words(room) == ["heard"]

@@ -91,6 +91,14 @@ class RunningGraph:
             self.processes.tend()
         raise AssertionError(f"the robot did not hear {line!r}; {self.chat[-5:]}")
 
+    def search_again(self, target: str) -> None:
+        """Ask for `target` once the last search has ended, until the dialogue knows so too and begins anew."""
+        for _ in range(SAY_TIMES):
+            self.say(f"find the {target}")
+            if self._spinner.spin_until(lambda: not self.has_ended(), SAY_AGAIN_S):
+                return
+        raise AssertionError(f"no search began again; {self.chat[-5:]}")
+
     def has_ended(self) -> bool:
         """Whether the search is over."""
         return self.search.phase in ENDED

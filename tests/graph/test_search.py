@@ -45,7 +45,7 @@ def test_a_search_asked_from_another_process_is_recorded_whole(tmp_path: Path) -
     ) as graph:
         graph.wait_until_active()
         ask("find the laptop")  # of which this home has two
-        graph.wait(lambda: graph.search.phase is SearchPhase.SEARCHING, "the search to begin")
+        graph.wait(lambda: graph.search.target == "laptop", "the search to begin")
         graph.say("find the unicorn")
         graph.wait(lambda: "I do not know what 'unicorn' looks like" in graph.chat[-1][1], "an answer")
         graph.say("why?")
@@ -105,8 +105,7 @@ def test_every_node_can_be_killed_in_mid_search(tmp_path: Path) -> None:
             )
             assert len(graph.states) > searches
             if number + 1 < len(victims):
-                graph.say(f"find the {target}")
-                graph.wait(lambda: not graph.has_ended(), "another search")
+                graph.search_again(target)
         assert len(graph.events) == len(victims), graph.events
     with open_bag(tmp_path / "bag") as bag:
         assert bag.manifest is not None

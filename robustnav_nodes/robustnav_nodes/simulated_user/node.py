@@ -28,6 +28,10 @@ class SimulatedUser(GraphNode[SimulatedUserParameters]):
         self.subscribe("chat/to_user", wire.text_from_message, self._on_line)
         self.every(self.parameters.check_period_s, self._wait, steady=True)
 
+    def activate(self) -> None:
+        """Begin to think about what to ask for."""
+        self._since_s = time.monotonic()
+
     def _on_objects(self, objects: tuple[ObjectInstance, ...]) -> None:
         target = self.parameters.target or choose_target(objects, self.parameters.seed)
         if target is not None and self._person is None:
@@ -36,7 +40,8 @@ class SimulatedUser(GraphNode[SimulatedUserParameters]):
     def _wait(self) -> None:
         if self._person is not None:
             self.health.figure("mood", self._person.mood)
-            if self._lines.get_subscription_count():
+            thought_s = time.monotonic() - self._since_s
+            if thought_s >= self.parameters.ask_after_s and self._lines.get_subscription_count():
                 self._say(self._person.wait(time.monotonic()))
 
     def _on_line(self, line: str) -> None:
