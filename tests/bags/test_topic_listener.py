@@ -158,6 +158,7 @@ def test_a_patient_listener_lets_others_be_found_first(room: Room) -> None:
     room.listener._patient, room.listener._patience_s = re.compile(TOPIC), 1.0
     speaker = room.mouth.create_publisher(String, TOPIC, 10)
     room.until(lambda: bool(room.ears.get_publishers_info_by_topic(TOPIC)))
+    room.listener.discover()
     room.now_s[0] += 0.9
     room.listener.discover()
     assert not room.is_heard

@@ -92,7 +92,7 @@ class RunningGraph:
         raise AssertionError(f"the robot did not hear {line!r}; {self.chat[-5:]}")
 
     def search_again(self, target: str) -> None:
-        """Ask for `target` once the last search has ended, until the dialogue knows so too and begins anew."""
+        """Ask for `target` when the last search has ended, until the dialogue knows so too."""
         for _ in range(SAY_TIMES):
             self.say(f"find the {target}")
             if self._spinner.spin_until(lambda: not self.has_ended(), SAY_AGAIN_S):
