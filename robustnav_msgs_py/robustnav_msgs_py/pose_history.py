@@ -5,11 +5,23 @@ from bisect import bisect_left
 from collections import deque
 from dataclasses import replace
 
+from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Odometry, Pose2D
 
 KEEP_NS = 10_000_000_000
 # How far outside the recorded span a stamp may lie: images and odometry do not come in order of their stamps.
 REACH_NS = 250_000_000
+# What is older than the newest by more than this did not come late: time began anew.
+LATE_NS = 1_000_000_000
+
+
+def check_frame(odometry: Odometry, map_frame: str) -> None:
+    """Raises BadMessageError where `odometry` is not in the map's frame: it would drift away from it."""
+    if odometry.frame_id != map_frame:
+        raise BadMessageError(
+            f"odom is in frame {odometry.frame_id!r}, the map in {map_frame!r}; it is taken as the pose in "
+            "the map all the same: remap odom to what the localisation says, or it will drift away"
+        )
 
 
 class PoseHistory:
@@ -26,11 +38,11 @@ class PoseHistory:
     def add(self, odometry: Odometry) -> bool:
         """Remember; returns True when time began anew (the simulation was reset), which forgets the past.
 
-        Odometry that comes late (older than the newest, by less than what is kept) is dropped.
+        Odometry that comes late (older than the newest, by less than a second) is dropped.
         """
         restarted = False
         if self._past and odometry.stamp_ns <= self._past[-1].stamp_ns:
-            if odometry.stamp_ns > self._past[-1].stamp_ns - REACH_NS:
+            if odometry.stamp_ns > self._past[-1].stamp_ns - LATE_NS:
                 return False
             self._past.clear()
             restarted = True

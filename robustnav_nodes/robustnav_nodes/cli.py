@@ -1,5 +1,6 @@
 """The command `robustnav`. Exit codes: 0 done, 1 the run failed (with one sentence), 2 wrong usage."""
 
+import signal
 import sys
 import time
 from enum import StrEnum
@@ -21,7 +22,9 @@ app = typer.Typer(
 bag_app = typer.Typer(help="Look into recorded runs.", no_args_is_help=True)
 app.add_typer(bag_app, name="bag")
 
-DEMO_LIMIT_S = 110.0
+DEMO_SPEED = 4.0
+DEMO_LIMIT_S = 110.0  # at that speed; slower ones take longer
+MAX_SEED = 2**31 - 1
 
 
 class Scenario(StrEnum):
@@ -48,11 +51,11 @@ def demo(
         User, typer.Option(help="who asks: a simulated person, or you (robustnav chat)")
     ] = User.SIMULATED,
     seed: Annotated[
-        int, typer.Option(min=0, help="decides the home, the object and the detector's errors")
+        int, typer.Option(min=0, max=MAX_SEED, help="decides the home, the object and the detector's errors")
     ] = 1,
     bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/demo_DATE")] = None,
     target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
-    speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds per second")] = 4.0,
+    speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds a second")] = DEMO_SPEED,
 ) -> None:
     """Run one search in a simulated home, record it, and sum it up from the bag."""
     from bags.demo_summary import show_summary
@@ -60,9 +63,7 @@ def demo(
     from robustnav_nodes.graph.search_graph import RunPlan
 
     console = _console()
-    folder = bag or Path("runs") / f"demo_{time.strftime('%Y%m%d_%H%M%S')}"
-    if folder.exists():
-        raise BadParameterError(f"the bag {str(folder)!r} exists already; name another one with --bag")
+    folder = _new_bag(bag, "demo")
     human = user is User.HUMAN
     plan = RunPlan(
         seed=seed,
@@ -83,28 +84,35 @@ def demo(
     else:
         console.print("[dim]starting 8 nodes, a process each; the first time, numba compiles the planner[/]")
     logs = folder.parent / f"{folder.name}_logs"
-    end = Demo(plan, console=console, log_folder=logs, timeout_s=None if human else DEMO_LIMIT_S).run()
+    limit_s = DEMO_LIMIT_S * max(1.0, DEMO_SPEED / speed)
+    end = Demo(plan, console=console, log_folder=logs, timeout_s=None if human else limit_s).run()
     if not show_summary(console, end, folder, logs):
         raise typer.Exit(1)
 
 
-@app.command()
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def up(
+    context: typer.Context,
     params: Annotated[Path | None, typer.Option(help="ROS parameter file (YAML)")] = None,
     one_process: Annotated[bool, typer.Option("--one-process", help="all nodes in this process")] = False,
     no_record: Annotated[bool, typer.Option("--no-record", help="record nothing")] = False,
     sim: Annotated[bool, typer.Option(help="with the simulated home; --no-sim on a robot")] = True,
     user: Annotated[User, typer.Option(help="who asks")] = User.HUMAN,
     seed: Annotated[
-        int, typer.Option(min=0, help="decides the simulated home and the planner's chances")
-    ] = 1,
+        int | None, typer.Option(min=0, max=MAX_SEED, help="decides the home and all else left to chance")
+    ] = None,
     bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/run_DATE")] = None,
 ) -> None:
-    """Run the graph until stopped (Ctrl-C)."""
+    """Run the graph until stopped (Ctrl-C).
+
+    What follows --ros-args goes to every node: robustnav up --ros-args -r __ns:=/robot1 -r odom:=pose.
+    """
     from robustnav_nodes.graph.search_graph import RunPlan
     from robustnav_nodes.graph.up import run_graph
 
-    folder = bag or Path("runs") / f"run_{time.strftime('%Y%m%d_%H%M%S')}"
+    folder = _new_bag(bag, "run")
+    if context.args and context.args[0] != "--ros-args":
+        raise BadParameterError(f"what is {context.args[0]!r}? Arguments for the nodes follow --ros-args")
     plan = RunPlan(
         seed=seed,
         with_simulation=sim,
@@ -112,6 +120,7 @@ def up(
         bag=None if no_record else folder,
         user_parameters=params,
         parameters={},
+        ros_arguments=tuple(context.args[1:]),
     )
     code = run_graph(
         plan, _console(), log_folder=folder.parent / f"{folder.name}_logs", one_process=one_process
@@ -123,7 +132,7 @@ def up(
     context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
 )
 def run(context: typer.Context, package: str, executable: str) -> None:
-    """Start one node, as `ros2 run PACKAGE EXECUTABLE [args]` does."""
+    """Start one node, as `ros2 run PACKAGE EXECUTABLE` does."""
     raise typer.Exit(_run(package, executable, context.args))
 
 
@@ -139,7 +148,9 @@ def chat() -> None:
 def doctor() -> None:
     """Say what is missing, mismatched or slow on this machine, and the remedy."""
     from robustnav_nodes.graph.doctor import Finding, examine
+    from robustnav_nodes.graph.environment import prepare_environment
 
+    prepare_environment()
     table = Table("", "what", "found", "remedy")
     findings = examine()
     marks = {
@@ -164,6 +175,14 @@ def bag_info_command(bag: Path) -> None:
         _console().print(render(bag_info(opened)))
 
 
+def _new_bag(bag: Path | None, kind: str) -> Path:
+    """The folder of this run's bag; raises BadParameterError where it exists already."""
+    folder = bag or Path("runs") / f"{kind}_{time.strftime('%Y%m%d_%H%M%S')}"
+    if folder.exists():
+        raise BadParameterError(f"the bag {str(folder)!r} exists already; name another one with --bag")
+    return folder
+
+
 def _run(package: str, executable: str, arguments: list[str]) -> int:
     from robustnav_nodes.graph.environment import prepare_environment
     from robustnav_nodes.graph.executables import run_executable
@@ -174,6 +193,7 @@ def _run(package: str, executable: str, arguments: list[str]) -> int:
 
 def main() -> int:
     """Entry point; errors that robustnav raises on purpose become one sentence."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C during start-up needs no traceback
     try:
         app()
     except BadParameterError as error:

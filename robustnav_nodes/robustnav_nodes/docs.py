@@ -46,7 +46,7 @@ def parameter_file() -> str:
     """Every parameter of every node at its default, with its description, as a ROS parameter file."""
     lines = ["# Every parameter at its default. Generated: `make docs`.", ""]
     for row in contract.NODES:
-        lines += [f"{row.executable}:", "  ros__parameters:"]
+        lines += [f"/**/{row.executable}:", "  ros__parameters:"]
         for spec in specs(node_class(row.package, row.executable).declaration):
             lines += [f"    # {spec.full_description}", f"    {spec.name}: {_yaml(spec)}"]
         lines.append("")

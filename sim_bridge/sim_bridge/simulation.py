@@ -22,7 +22,7 @@ from sim_bridge.world import World
 NS_PER_S = 1_000_000_000
 # ROS takes time 0 for "no time yet".
 START_NS = NS_PER_S
-ODOM_FRAME = "odom"
+ODOM_FRAME = "map"  # nothing drifts here, so odometry is the pose in the map
 BASE_FRAME = "base_link"
 
 

@@ -78,7 +78,8 @@ def test_the_end_of_the_search_is_told_once(door: FrontDoor) -> None:
     assert door.hear_search(SEARCHING) is None
     news = door.hear_search(found)
     assert news is not None
-    assert news.startswith("I found the mug")
+    assert news.answer.startswith("I found the mug")
+    assert news.target == ""  # latched, it would send a planner that starts later out again
     assert door.hear_search(found) is None
 
 
@@ -88,12 +89,23 @@ def test_a_search_for_something_else_is_not_reported(door: FrontDoor) -> None:
 
 
 def test_a_dialogue_that_was_started_again_takes_the_search_over(door: FrontDoor) -> None:
-    door.adopt(SEARCHING)
-    assert door.state.target == "mug"
+    taken = door.hear_search(SEARCHING)
+    assert taken is not None
+    assert (taken.answer, taken.target) == ("", "mug")
+    found = door.hear_search(SearchState(phase=SearchPhase.FOUND, target="mug", episode=1))
+    assert found is not None
+    assert found.answer.startswith("I found")
+
+
+def test_a_search_that_a_service_stopped_is_told(door: FrontDoor) -> None:
+    door.hear("find the mug", None)
     door.hear_search(SEARCHING)
-    assert (door.hear_search(SearchState(phase=SearchPhase.FOUND, target="mug", episode=1)) or "").startswith(
-        "I found"
+    stopped = SearchState(
+        phase=SearchPhase.STOPPED, target="mug", episode=1, message="stopped by a service call"
     )
+    news = door.hear_search(stopped)
+    assert news is not None
+    assert (news.answer, news.target) == ("I stopped looking for the mug: by a service call.", "")
 
 
 def test_why_is_answered_from_the_decision(door: FrontDoor) -> None:

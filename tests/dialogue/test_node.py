@@ -45,8 +45,8 @@ def test_find_stop_and_the_end_of_a_search(talk: Talk) -> None:
     talk.bench.wait(lambda: talk.targets and talk.targets[-1].data == "mug", "the target")
     talk.search.publish(wire.record_to_message(SearchState(phase=SearchPhase.FOUND, target="mug", episode=1)))
     talk.bench.wait(lambda: talk.answers[-1].data.startswith("I found the mug"), "the news")
-    assert talk.say("stop") == "I have stopped."
     talk.bench.wait(lambda: talk.targets[-1].data == "", "the empty target")
+    assert talk.say("stop") == "I have stopped."
     state: Any = wire.record_from_message(talk.states[-1], DialogueState)
     assert (state.target, state.lines_heard, state.last_heard) == ("", 2, "stop")
 

@@ -16,7 +16,7 @@ from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.records import Decision, SearchPhase, SearchState
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.node import message_class
-from robustnav_nodes.graph.processes import ProcessGraph
+from robustnav_nodes.graph.processes import STOPPED_FIRST, ProcessGraph
 from robustnav_nodes.graph.search_graph import RunPlan
 from robustnav_nodes.graph.spin import Spinner
 from robustnav_nodes.graph.watcher import RunWatcher
@@ -115,7 +115,7 @@ class RunningGraph:
 
 @contextmanager
 def running_graph(folder: Path, **settings: Any) -> Iterator[RunningGraph]:
-    """A graph with a bag in `folder`/bag; stopped at the end, the recorder first; exit codes checked."""
+    """A graph with a bag in `folder`/bag; stopped at the end, in order; exit codes checked."""
     speed = settings.pop("speed", 5.0)
     parameters = {"sim_bridge": {"real_time_factor": speed}, **settings.pop("parameters", {})}
     plan = RunPlan(bag=folder / "bag", parameters=parameters, **settings)
@@ -125,7 +125,7 @@ def running_graph(folder: Path, **settings: Any) -> Iterator[RunningGraph]:
     try:
         yield graph
     finally:
-        codes = graph.processes.stop(first=("recorder",))
+        codes = graph.processes.stop(first=STOPPED_FIRST)
         graph.watcher.destroy_node()
         rclpy.try_shutdown()
     assert set(codes.values()) == {0}, (codes, graph.lines[-20:])

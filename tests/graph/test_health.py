@@ -1,7 +1,7 @@
 """A node's health: problems are logged once, shown for a while, and kept count of."""
 
 from robustnav_msgs_py.values import ERROR, OK, WARN
-from robustnav_nodes.graph.health import REMEMBER_S, Health
+from robustnav_nodes.graph.health import FORGET_S, REMEMBER_S, Health
 
 
 class Clock:
@@ -35,6 +35,20 @@ def test_the_worst_recent_problem_is_the_message_until_it_is_over() -> None:
     assert (health.status("n", []).level, health.status("n", []).message) == (WARN, "odd")
     clock.now_s += REMEMBER_S + 1.0
     assert (health.status("n", []).level, health.status("n", []).message) == (OK, "ok")
+
+
+def test_another_trouble_at_the_same_place_is_logged_when_its_time_has_come() -> None:
+    log: list[tuple[int, str]] = []
+    clock = Clock()
+    health = Health(lambda level, sentence: log.append((level, sentence)), clock)
+    health.problem("map", "first")
+    for _ in range(int(REMEMBER_S) + 2):
+        clock.now_s += 1.0
+        health.problem("map", "second")
+    assert [sentence for _, sentence in log] == ["map: first", "map: second"]
+    clock.now_s += FORGET_S + 1.0
+    health.problem("map", "second")
+    assert len(log) == 3
 
 
 def test_figures_and_waiting() -> None:

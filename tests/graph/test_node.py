@@ -1,5 +1,6 @@
 """The base of every node: life cycle, parameters, contract, and callbacks that cannot kill it."""
 
+import threading
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -9,6 +10,7 @@ from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.parameter import Parameter as NodeParameter
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from robustnav_msgs_py import conversions as wire
@@ -206,3 +208,36 @@ def test_work_in_a_thread_comes_back_and_its_errors_are_shown(bench: Bench) -> N
     bench.wait(lambda: failed, "the failure")
     assert "ZeroDivisionError" in node.health.status("x", []).message
     assert not worker.busy
+
+
+def test_a_worker_is_free_again_after_its_node_was_away(bench: Bench) -> None:
+    node = bench.add(Echo())
+    up(node)
+    worker = node.worker("sums")
+    done: list[int] = []
+    release = threading.Event()
+    worker.submit(lambda: int(release.wait(20.0)), done.append)
+    node._active = False  # as while it is deactivated
+    release.set()
+    bench.wait(lambda: not worker.busy, "the worker to be free")
+    assert done == []
+
+
+def test_a_node_that_fails_on_its_way_down_goes_down(bench: Bench) -> None:
+    node = bench.add(Echo())
+    up(node)
+    node.deactivate = lambda: 1 // 0
+    node.cleanup = lambda: 1 // 0
+    node.trigger_deactivate()
+    assert node.state_id == State.PRIMARY_STATE_INACTIVE
+    node.trigger_cleanup()
+    assert node.state_id == State.PRIMARY_STATE_UNCONFIGURED
+    assert "ZeroDivisionError" in node.health.status("x", []).message
+
+
+def test_somebody_who_does_not_latch_is_named(bench: Bench) -> None:
+    node = bench.add(Echo())
+    up(node)
+    bench.outside.create_publisher(String, "detections/labels", 10)
+    words = "'outside' publishes detections/labels volatile"
+    bench.wait(lambda: words in node.health.status("x", []).message, "the warning")

@@ -1,5 +1,7 @@
 """Each node starts alone, waits for its inputs without complaint, describes its parameters, stops cleanly."""
 
+import os
+import select
 import signal
 import subprocess
 import sys
@@ -10,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 from rclpy.node import NodeNameNonExistentError
@@ -18,7 +21,9 @@ from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.parameters import specs
 from robustnav_msgs_py.values import OK
+from robustnav_nodes.docs import PARAMETER_FILE
 from robustnav_nodes.graph.one_process import node_class
+from robustnav_nodes.graph.processes import ProcessPlan
 from tests.bench import Bench
 
 DEADLINE_S = 30.0
@@ -147,3 +152,44 @@ def test_an_executable_that_does_not_exist_is_a_sentence() -> None:
     assert process.returncode == 1
     assert "robustnav_nodes planner" in output
     assert "Traceback" not in output
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.executable)
+def test_the_shipped_parameter_file_fits_every_node_in_any_namespace(
+    row: contract.NodeRow, bench: Bench
+) -> None:
+    arguments = [
+        "--ros-args",
+        "--params-file",
+        str(PARAMETER_FILE),
+        "-r",
+        "__ns:=/robot1",
+        "-p",
+        "autostart:=false",
+    ]
+    rclpy.shutdown()
+    rclpy.init(args=arguments)
+    node = node_class(row.package, row.executable)()
+    given = node._parameter_overrides
+    assert {spec.name for spec in specs(node.declaration) if spec.default != []} <= set(given)
+    assert node.parameters == node.declaration()
+    node.destroy_node()
+
+
+def test_nodes_end_with_the_process_that_started_them(tmp_path: Path) -> None:
+    """A graph that is killed leaves no node behind to drive a robot."""
+    plan = ProcessPlan(package="robustnav_nodes", executable="dialogue")
+    code = (
+        "import sys; from robustnav_nodes.graph.processes import *\n"
+        f"graph = ProcessGraph([{plan!r}], lambda name, line: print(line, flush=True), print)\n"
+        "graph.start(); print(graph.pid('dialogue'), flush=True); sys.stdin.read()"
+    )
+    pipe = subprocess.PIPE
+    parent = subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True)
+    assert parent.stdout is not None
+    child = int(parent.stdout.readline())
+    wait_for_line(parent, "dialogue is active")
+    parent.kill()
+    parent.communicate()
+    end = os.pidfd_open(child)
+    assert select.select([end], [], [], DEADLINE_S)[0], "the node lives on"

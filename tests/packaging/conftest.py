@@ -3,10 +3,10 @@
 import os
 import re
 import selectors
+import shutil
 import signal
 import subprocess
 import sys
-import tarfile
 import time
 import tomllib
 from collections.abc import Callable, Mapping
@@ -55,8 +55,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Path], Pat
 def release(root: Path, build: Callable[[str, Path], Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Unpack a source release: the checkout without what git ignores."""
     unpacked = tmp_path_factory.mktemp("release")
-    with tarfile.open(build("sdist", root)) as archive:
-        archive.extractall(unpacked, filter="data")
+    shutil.unpack_archive(build("sdist", root), unpacked)
     (tree,) = unpacked.iterdir()
     return tree
 

@@ -10,9 +10,10 @@ import numpy as np
 from std_msgs.msg import Float64
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
-from robustnav_msgs_py.pose_history import PoseHistory
-from robustnav_msgs_py.values import Detections, OccupancyMap
+from robustnav_msgs_py.pose_history import PoseHistory, check_frame
+from robustnav_msgs_py.values import Detections, OccupancyMap, Odometry
 from robustnav_nodes.belief.belief_map import belief_map
 from robustnav_nodes.belief.detector_statistics import DetectorStatistics, read_detector_statistics
 from robustnav_nodes.belief.parameters import BeliefParameters
@@ -54,13 +55,18 @@ class Belief(GraphNode[BeliefParameters]):
         self._entropy = self.publisher("belief/entropy")
         self.subscribe("map", wire.map_from_message, self._on_map)
         self.subscribe("search/candidates", wire.map_from_message, self._floor.heard_mask)
-        self.subscribe("odom", wire.odometry_from_message, self._poses.add)
+        self.subscribe("odom", wire.odometry_from_message, self._on_odometry)
         self.subscribe("search/target", wire.text_from_message, self._on_target)
         self.subscribe("detections/labels", wire.labels_from_message, self._on_labels)
         self.subscribe("detections", wire.detections_from_message, self._on_detections)
         self.serve("belief/get_map", self._get_map)
         self.serve("~/reset", self._reset)
         self.every(limits.floor_check_s, self._build, steady=True)
+
+    def _on_odometry(self, odometry: Odometry) -> None:
+        self._poses.add(odometry)
+        if self._view is not None:
+            check_frame(odometry, self._view.frame_id)
 
     def _on_map(self, floor_map: OccupancyMap) -> None:
         self._floor.heard_map(floor_map, time.monotonic())
@@ -76,8 +82,9 @@ class Belief(GraphNode[BeliefParameters]):
         self._start()
 
     def _on_target(self, target: str) -> None:
-        self._target = target.strip()
-        self._start()
+        if target.strip() != self._target:  # said again by a dialogue that was started again
+            self._target = target.strip()
+            self._start()
 
     def _on_labels(self, labels: tuple[str, ...]) -> None:
         self._labels = labels
@@ -94,9 +101,27 @@ class Belief(GraphNode[BeliefParameters]):
             self._say_summary()
 
     def _on_detections(self, detections: Detections) -> None:
-        odometry = self._poses.at(detections.stamp_ns)
-        if self._tracker is None or odometry is None or not self._labels:
+        if self._tracker is None or not self._labels:
             return
+        odometry = self._poses.at(detections.stamp_ns)
+        if odometry is None:
+            latest = self._poses.latest
+            if latest is not None:
+                raise BadMessageError(
+                    f"detections of {detections.stamp_ns / wire.NANOSECONDS:.2f} s and the latest odometry "
+                    f"of {latest.stamp_ns / wire.NANOSECONDS:.2f} s do not belong together: do both nodes "
+                    "have the same clock (use_sim_time)?"
+                )
+            return
+        if len(detections) and int(detections.label.max()) >= len(self._labels):
+            raise BadMessageError(
+                f"a detection has label {int(detections.label.max())}; detections/labels names only "
+                f"{len(self._labels)} classes, counted from 0"
+            )
+        if self._target not in self._labels:
+            raise BadMessageError(
+                f"the target {self._target!r} is none of the detector's classes: {', '.join(self._labels)}"
+            )
         of_target = np.array([self._labels[label] == self._target for label in detections.label], dtype=bool)
         mount = CameraMount(
             x_m=self.parameters.camera_forward_m,

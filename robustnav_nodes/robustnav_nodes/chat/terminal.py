@@ -50,7 +50,12 @@ def chat(console: Console) -> int:
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     spinner = Spinner(EventsExecutor())
     stop_on_signals(spinner.stop)
-    terminal = Terminal(lambda line: console.print(f"[bold yellow]robot:[/] {line}"))
+
+    def show(line: str) -> None:
+        console.print("[bold yellow]robot:[/] ", end="")
+        console.print(line, markup=False)
+
+    terminal = Terminal(show)
     spinner.executor.add_node(terminal)
     console.print("[dim]waiting for the robot's dialogue ...[/]")
     if not spinner.spin_until(terminal.is_heard, timeout_s=float("inf")):

@@ -10,6 +10,7 @@ from robustnav_nodes.dialogue.parameters import DialogueParameters
 from robustnav_nodes.dialogue.requests import Request, RequestKind, UnreadableLineError, read_line
 
 SHOWN_CHARS = 120
+UNDER_WAY = (SearchPhase.SEARCHING, SearchPhase.DOCKING)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,28 +44,33 @@ class FrontDoor:
         """The planner decided."""
         self._decision = decision
 
-    def hear_search(self, search: SearchState) -> str | None:
-        """How the search stands; returns what to tell the person when it has ended."""
+    def hear_search(self, search: SearchState) -> Reaction | None:
+        """How the search stands; returns what to tell the person, and the end of the target with the search.
+
+        The target does not outlive its search: it is latched, and a node that starts later must not begin
+        to look for what was found already. A dialogue that was started again takes over a search that goes
+        on, and says its target again, since the word it had latched is gone.
+        """
         before, self._search = self._search, search
+        if search.phase in UNDER_WAY and not self._state.target:
+            self._state = replace(self._state, target=search.target)
+            return Reaction(answer="", target=search.target)
         same = (search.episode, search.phase) == (before.episode, before.phase)
-        if same or search.target != self._state.target:
+        if same or search.target != self._state.target or not search.target:
             return None
         if search.phase is SearchPhase.FOUND:
-            return self._said(
+            return self._ended(
                 f"I found the {search.target}: it is near x = {search.best_x_m:.1f} m, "
                 f"y = {search.best_y_m:.1f} m, and I am looking at it. "
                 f"It took {search.step} steps and {search.path_length_m:.1f} m."
             )
         if search.phase is SearchPhase.NOT_FOUND:
-            return self._said(f"I did not find the {search.target}: {search.message}.")
+            return self._ended(f"I did not find the {search.target}: {search.message}.")
+        if search.phase is SearchPhase.STOPPED:
+            return self._ended(f"I stopped looking for the {search.target}: {search.message}.")
         if search.phase is SearchPhase.DOCKING:
-            return self._said(f"I think I see the {search.target}; I am driving there.")
+            return Reaction(answer=self._said(f"I think I see the {search.target}; I am driving there."))
         return None
-
-    def adopt(self, search: SearchState) -> None:
-        """Take over a search that goes on already (the dialogue was started again)."""
-        if not self._state.target and search.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING):
-            self._state = replace(self._state, target=search.target)
 
     def hear(self, line: str, robot: Pose2D | None) -> Reaction:
         """One line of the person; `robot` is where the robot is, if known."""
@@ -110,8 +116,7 @@ class FrontDoor:
         name = matching_class(thing, self._names)
         if name is None:
             return Reaction(answer=f"I do not know what {_quoted(thing)} looks like. {self._offer()}")
-        under_way = self._search.phase in (SearchPhase.SEARCHING, SearchPhase.DOCKING)
-        if under_way and name == self._search.target == self._state.target:
+        if self._search.phase in UNDER_WAY and name == self._search.target == self._state.target:
             return Reaction(answer=f"I am still looking for the {name}.")
         return Reaction(answer=f"I am looking for the {name}.", target=name)
 
@@ -120,6 +125,10 @@ class FrontDoor:
             return "Ask me to find something, such as: find the mug."
         names = listed(self._names, self._parameters.max_names)
         return f"I can find: {names}. Say, for example: find the {self._names[0]}."
+
+    def _ended(self, line: str) -> Reaction:
+        self._state = replace(self._state, target="")
+        return Reaction(answer=self._said(line), target="")
 
     def _said(self, line: str) -> str:
         self._state = replace(self._state, last_said=line)

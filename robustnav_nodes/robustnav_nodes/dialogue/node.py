@@ -6,7 +6,7 @@ from functools import partial
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.records import Decision, SearchState
-from robustnav_nodes.dialogue.front_door import FrontDoor
+from robustnav_nodes.dialogue.front_door import FrontDoor, Reaction
 from robustnav_nodes.dialogue.parameters import DialogueParameters
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
@@ -41,19 +41,19 @@ class Dialogue(GraphNode[DialogueParameters]):
         here = self._poses.latest
         reaction = self._door.hear(line, here.pose if here is not None else None)
         self.health.count("lines heard")
-        self._say(reaction.answer)
-        if reaction.target is not None:
-            self._target.publish(wire.text_to_message(reaction.target))
+        self._do(reaction)
 
     def _on_search(self, search: SearchState) -> None:
-        self._door.adopt(search)
         news = self._door.hear_search(search)
         if news is not None:
-            self._say(news)
+            self._do(news)
 
-    def _say(self, line: str) -> None:
-        self._state.publish(wire.record_to_message(self._door.state, summary=line))
-        self._answers.publish(wire.text_to_message(line))
+    def _do(self, reaction: Reaction) -> None:
+        self._state.publish(wire.record_to_message(self._door.state, summary=reaction.answer))
+        if reaction.answer:
+            self._answers.publish(wire.text_to_message(reaction.answer))
+        if reaction.target is not None:
+            self._target.publish(wire.text_to_message(reaction.target))
 
 
 def main() -> int:

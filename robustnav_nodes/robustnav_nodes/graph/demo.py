@@ -11,7 +11,7 @@ from rich.console import Console
 
 from robustnav_msgs_py.records import Decision, SearchPhase, SearchState
 from robustnav_nodes.graph.environment import prepare_environment
-from robustnav_nodes.graph.processes import ProcessGraph
+from robustnav_nodes.graph.processes import STOPPED_FIRST, ProcessGraph
 from robustnav_nodes.graph.search_graph import RunPlan
 from robustnav_nodes.graph.shared_memory import clean_shared_memory
 from robustnav_nodes.graph.spin import Spinner, stop_on_signals
@@ -46,7 +46,7 @@ class Demo:
         self._log_folder = log_folder
         self._timeout_s = timeout_s
         self._search = SearchState()
-        self._thanked = False
+        self._told, self._thanked = False, False
         self._restarts = 0
         self._shown_step = 0
         self._began_s = time.monotonic()
@@ -77,7 +77,7 @@ class Demo:
             timed_out = self._follow(graph, spinner)
         finally:
             self._say("[dim]closing the bag and stopping the nodes[/]", "")
-            graph.stop(first=("recorder",))
+            graph.stop(first=STOPPED_FIRST)
             watcher.destroy_node()
             rclpy.try_shutdown()
             clean_shared_memory()
@@ -95,10 +95,14 @@ class Demo:
             if self._timeout_s is not None and time.monotonic() - self._began_s > self._timeout_s:
                 return True
             if spinner.spin_until(self._is_over, LOOK_PERIOD_S):
-                spinner.spin_until(lambda: self._thanked or not self._plan.with_simulated_user, FAREWELL_S)
+                spinner.spin_until(self._is_said, FAREWELL_S)
                 return False
             graph.tend()
         return False
+
+    def _is_said(self) -> bool:
+        """Whether the robot has told the end, and the person has thanked."""
+        return self._told and (self._thanked or not self._plan.with_simulated_user)
 
     def _is_over(self) -> bool:
         return self._timeout_s is not None and self._search.phase in ENDED
@@ -127,8 +131,9 @@ class Demo:
 
     def _on_chat(self, who: str, line: str) -> None:
         self._say(f"[bold {'green' if who == 'person' else 'yellow'}]{who}:[/] ", line)
-        if who == "person" and self._search.phase in ENDED:
-            self._thanked = True
+        if self._search.phase in ENDED:
+            self._thanked = self._thanked or who == "person"
+            self._told = self._told or who == "robot"
 
     def _on_event(self, sentence: str) -> None:
         self._restarts += 1

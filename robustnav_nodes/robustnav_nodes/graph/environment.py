@@ -31,5 +31,5 @@ def share_directory(package: str) -> Path:
     """Where the data files of a ROS package lie: after pip install, and after colcon build."""
     try:
         return Path(get_package_share_directory(package))
-    except (PackageNotFoundError, LookupError):
+    except (PackageNotFoundError, OSError):
         return Path(sys.prefix) / "share" / package

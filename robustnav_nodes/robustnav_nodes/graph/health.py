@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from robustnav_msgs_py.values import OK, WARN, Status
 
 REMEMBER_S = 10.0
+FORGET_S = 600.0
 
 
 @dataclass(slots=True)
 class _Problem:
     sentence: str
+    logged: str
     level: int
     count: int
     last_s: float
@@ -21,8 +23,9 @@ class _Problem:
 class Health:
     """Collects figures and problems of one node; owned by the node, used in its executor thread only.
 
-    A problem is logged when it first appears and again when it says something else, at most once in
-    `REMEMBER_S` seconds for each place; it stays in the status for as long after its last occurrence.
+    A problem is logged when it first appears, again when it says something else (at most once in `REMEMBER_S`
+    seconds for each place), and again when it comes back after `FORGET_S` seconds; it stays the node's
+    message for `REMEMBER_S` seconds after its last occurrence.
     `log` takes a level (WARN or ERROR) and a sentence; `clock` gives monotonic seconds.
     """
 
@@ -47,15 +50,15 @@ class Health:
         """
         now = self._clock()
         known = self._problems.get(where)
-        if known is None:
-            self._problems[where] = _Problem(sentence, level, 1, now, now)
+        if known is None or now - known.last_s > FORGET_S:
+            self._problems[where] = _Problem(sentence, sentence, level, 1, now, now)
             self._log(level, f"{where}: {sentence}{detail}")
             return
         known.count, known.last_s, known.level = known.count + 1, now, level
-        if sentence != known.sentence and now - known.logged_s > REMEMBER_S:
-            known.logged_s = now
-            self._log(level, f"{where}: {sentence}{detail}")
         known.sentence = sentence
+        if sentence != known.logged and now - known.logged_s > REMEMBER_S:
+            known.logged, known.logged_s = sentence, now
+            self._log(level, f"{where}: {sentence}{detail}")
 
     def status(self, name: str, waiting_for: list[str]) -> Status:
         """The status as of now; `waiting_for` lists inputs that have not come yet, which is no problem."""

@@ -14,6 +14,7 @@ from rclpy.clock_type import ClockType
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
+from rclpy.qos import DurabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
@@ -211,7 +212,7 @@ class GraphNode(LifecycleNode, Generic[P]):
             self._report(name, error)
             failed()
 
-        made = Worker(self.call_soon, report)
+        made = Worker(self.call_soon, partial(self._guard, name), report)
         self._workers.append(made)
         return made
 
@@ -219,7 +220,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         """Run `work` in the executor's thread; may be called from any thread."""
         executor = self.executor
         if executor is not None:
-            executor.create_task(partial(self._guard, "worker", work))
+            executor.create_task(work)
 
     # Life cycle.
 
@@ -244,16 +245,15 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `deactivate`, then close the publishers."""
-        result = self._transition("deactivate", self.deactivate, lambda: TransitionCallbackReturn.SUCCESS)
+        self._attempt("deactivate", self.deactivate)
         self._active = False
-        super().on_deactivate(state)
-        return result
+        return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Run `cleanup`, then take down what `configure` made."""
-        result = self._transition("clean up", self.cleanup, lambda: TransitionCallbackReturn.SUCCESS)
+        self._attempt("clean up", self.cleanup)
         self._take_down()
-        return result
+        return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Deactivate and clean up, from wherever the node is."""
@@ -264,8 +264,16 @@ class GraphNode(LifecycleNode, Generic[P]):
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Take everything down; the node can be configured again."""
         self._active = False
+        self._attempt("clean up", self.cleanup)
         self._take_down()
         return TransitionCallbackReturn.SUCCESS
+
+    def _attempt(self, name: str, work: Callable[[], None]) -> None:
+        """Going down cannot be refused: what fails is reported, and the rest is taken down all the same."""
+        try:
+            work()
+        except Exception as error:
+            self._report(f"cannot {name}", error, level=ERROR)
 
     def _transition(
         self, name: str, work: Callable[[], None], after: Callable[[], TransitionCallbackReturn]
@@ -276,6 +284,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         except Exception as error:  # rclpy would swallow it and go to on_error without a word
             self._report(f"cannot {name}", error, level=ERROR)
             if name == "configure":
+                self._attempt("clean up", self.cleanup)
                 self._take_down()
             return TransitionCallbackReturn.FAILURE
 
@@ -342,9 +351,23 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def _publish_diagnostics(self) -> None:
         waiting = self._waiting_for if self._active else []
+        for name in waiting:
+            self._check_publishers(name)
         status = self.health.status(self.get_fully_qualified_name(), waiting)
         message = DiagnosticArray(header=header(self.now_ns(), ""), status=[status_to_message(status)])
         self._diagnostics.publish(message)
+
+    def _check_publishers(self, name: str) -> None:
+        """Say so where somebody speaks on a latched topic without latching: DDS then delivers nothing."""
+        if not contract.topic(name).qos.latched:
+            return
+        for publisher in self.get_publishers_info_by_topic(self.resolve_topic_name(name)):
+            if publisher.qos_profile.durability is DurabilityPolicy.VOLATILE:
+                self.health.problem(
+                    name,
+                    f"{publisher.node_name!r} publishes {name} volatile, so it is not heard: publish it "
+                    f"transient local, or set the qos_overrides of {name} to volatile",
+                )
 
     def _log(self, level: int, sentence: str) -> None:
         logger = self.get_logger()

@@ -52,9 +52,13 @@ class NodeParameters(Generic[P]):
                 descriptor.integer_range = [
                     IntegerRange(from_value=int(spec.low), to_value=int(spec.high), step=1)
                 ]
-        if spec.name in self._given:
-            spec.checked(self._given[spec.name].value)  # a clearer sentence than rclpy's exception
-        self._node.declare_parameter(spec.name, spec.default, descriptor)
+        given = self._given.get(spec.name)
+        is_given = (
+            given is not None and given.value is not None
+        )  # rcl reads an empty list in YAML as "not set"
+        if given is not None and is_given:
+            spec.checked(given.value)  # a clearer sentence than rclpy's exception
+        self._node.declare_parameter(spec.name, spec.default, descriptor, ignore_override=not is_given)
 
     def _read(self) -> P:
         return build(self._declaration, {name: self._node.get_parameter(name).value for name in self._specs})

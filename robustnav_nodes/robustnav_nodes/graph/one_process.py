@@ -1,7 +1,6 @@
 """All nodes of a run in this process and one executor: for tests and small computers."""
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +21,7 @@ def node_class(package: str, executable: str) -> type[GraphNode[Any]]:
     raise GraphError(f"{main.__module__} holds no GraphNode whose executable is {executable!r}")
 
 
-def run_in_one_process(plan: RunPlan, parameter_files: Sequence[Path]) -> int:
+def run_in_one_process(plan: RunPlan, parameter_files: tuple[Path, ...]) -> int:
     """Run until SIGINT or SIGTERM; returns the exit code."""
     classes = [node_class(row.package, row.executable) for row in plan.nodes]
-    arguments = [part for file in parameter_files for part in ("--params-file", str(file))]
-    return run_nodes(classes, ["--ros-args", *arguments])
+    return run_nodes(classes, ["--ros-args", *plan.arguments(parameter_files)])

@@ -10,10 +10,13 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from robustnav_nodes.graph.spin import PARENT_HOLDS_STDIN, WRONG_USAGE
+
 FIRST_BACK_OFF_S = 0.5
 LONGEST_BACK_OFF_S = 8.0
 STEADY_AFTER_S = 30.0  # a process that has run this long has recovered: its next back-off is the first again
-STOP_TIMEOUT_S = 10.0
+STOP_TIMEOUT_S = 40.0  # longer than the recorder takes at most to close its bag
+STOPPED_FIRST = ("planner", "recorder")  # the robot stands; that goes into the bag; then the others
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +42,7 @@ class _Running:
     back_off_s: float = FIRST_BACK_OFF_S
     restart_at_s: float | None = None
     reader: threading.Thread | None = None
+    given_up: bool = False
 
 
 @dataclass(slots=True)
@@ -66,6 +70,11 @@ class ProcessGraph:
         for running in self._running:
             code = running.process.poll()
             if code is None:
+                continue
+            if code == WRONG_USAGE:  # it would only say the same again
+                if not running.given_up:
+                    running.given_up = True
+                    self.on_event(f"{running.plan.executable} cannot run as it was told to; it stays away")
                 continue
             if running.restart_at_s is None:
                 if now - running.started_s > STEADY_AFTER_S:
@@ -109,6 +118,8 @@ class ProcessGraph:
                 with contextlib.suppress(ProcessLookupError):  # it may have left just now
                     os.killpg(running.process.pid, signal.SIGKILL)
                 running.process.wait()
+            if running.process.stdin is not None:
+                running.process.stdin.close()
             if running.reader is not None:
                 running.reader.join()
 
@@ -116,12 +127,13 @@ class ProcessGraph:
         # a session of its own: Ctrl-C in the terminal reaches us alone, and we stop the nodes in order
         return subprocess.Popen(
             plan.command,
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
             errors="replace",
             start_new_session=True,
+            env={**os.environ, PARENT_HOLDS_STDIN: "1"},
         )
 
     def _read(self, running: _Running) -> None:

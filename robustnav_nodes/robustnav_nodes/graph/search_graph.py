@@ -18,20 +18,22 @@ ON_WALL_TIME = ("sim_bridge", "manager", "recorder")  # the first makes the simu
 class RunPlan:
     """One run of the graph.
 
-    parameters: what this run sets, by executable, over the nodes' own defaults and over `user_parameters`
-    (a ROS parameter file, None: none). The bag is `bag`, None: nothing is recorded.
+    parameters: what this run sets, by executable, over `user_parameters` (a ROS parameter file, None: none),
+    which stand over the nodes' own defaults. seed: of all that is left to chance, None: as the parameters
+    say. The bag is `bag`, None: nothing is recorded. ros_arguments: for every node (`-r odom:=pose`).
     """
 
-    seed: int = 1
+    seed: int | None = 1
     with_simulation: bool = True
     with_simulated_user: bool = True
     bag: Path | None = None
     user_parameters: Path | None = None
+    ros_arguments: tuple[str, ...] = ()
     parameters: Mapping[str, Mapping[str, Any]]
 
     @property
     def nodes(self) -> tuple[contract.NodeRow, ...]:
-        """The nodes of the run; the recorder comes last, so that it hears all the others come up."""
+        """The nodes of the run, in the contract's order."""
         left_out = set()
         if not self.with_simulation:
             left_out |= {"sim_bridge", "simulated_user"}
@@ -48,7 +50,7 @@ class RunPlan:
         for name in names:
             simulated_time = self.with_simulation and name not in ON_WALL_TIME
             chosen[name] = {"use_sim_time": simulated_time, "autostart": name == "manager"}
-            if name in ("sim_bridge", "planner", "detection", "simulated_user"):
+            if self.seed is not None and name in ("sim_bridge", "planner", "detection", "simulated_user"):
                 chosen[name]["seed"] = self.seed
         chosen["manager"]["nodes"] = [name for name in names if name != "manager"]
         if self.bag is not None:
@@ -62,8 +64,10 @@ class RunPlan:
     def write_parameters(self, path: Path) -> tuple[Path, ...]:
         """Write this run's ROS parameter file; returns the files that nodes read, later ones win.
 
-        Raises BadFileError where a file cannot be written or read.
+        Raises BadFileError where a file cannot be written, or the user's is not there or no YAML.
         """
+        if self.user_parameters is not None:
+            _check_yaml(self.user_parameters)
         content = {
             f"/**/{name}": {"ros__parameters": values} for name, values in self.node_parameters().items()
         }
@@ -74,16 +78,30 @@ class RunPlan:
             raise BadFileError(
                 f"cannot write the run's parameters to {str(path)!r}: {error.strerror}"
             ) from error
-        if self.user_parameters is None:
-            return (path,)
-        if not self.user_parameters.is_file():
-            raise BadFileError(f"there is no parameter file {str(self.user_parameters)!r}")
-        return (path, self.user_parameters)
+        return (path,) if self.user_parameters is None else (self.user_parameters, path)
 
     def process_plans(self, parameter_files: tuple[Path, ...]) -> list[ProcessPlan]:
         """One process per node."""
-        arguments = tuple(part for file in parameter_files for part in ("--params-file", str(file)))
+        arguments = self.arguments(parameter_files)
         return [
             ProcessPlan(package=row.package, executable=row.executable, ros_arguments=arguments)
             for row in self.nodes
         ]
+
+    def arguments(self, parameter_files: tuple[Path, ...]) -> tuple[str, ...]:
+        """What every node gets after `--ros-args`."""
+        files = tuple(part for file in parameter_files for part in ("--params-file", str(file)))
+        return (*files, *self.ros_arguments)
+
+
+def _check_yaml(path: Path) -> None:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadFileError(f"cannot read the parameter file {str(path)!r}: {error}") from error
+    except yaml.YAMLError as error:
+        raise BadFileError(f"the parameter file {str(path)!r} is no YAML: {error}") from error
+    if not isinstance(content, dict):
+        raise BadFileError(
+            f"the parameter file {str(path)!r} must hold nodes and their ros__parameters, not {content!r}"
+        )

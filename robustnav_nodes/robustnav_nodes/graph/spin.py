@@ -12,15 +12,20 @@ import rclpy
 from lifecycle_msgs.msg import State
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
 
 from robustnav_msgs_py.errors import BadParameterError, RobustnavError
 from robustnav_nodes.graph.environment import prepare_environment
 from robustnav_nodes.graph.node import GraphNode
 
-STOP_SIGNALS = {signal.SIGINT, signal.SIGTERM}
+RCLError = rclpy_implementation.RCLError
+WRONG_USAGE = 2
+
+STOP_SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}  # the last: the terminal is gone
 # Work from other threads wakes the executor; the period only bounds how long a lost wake-up can last.
 SPIN_PERIOD_S = 1.0
+PARENT_HOLDS_STDIN = "ROBUSTNAV_PARENT_HOLDS_STDIN"
 
 
 class Spinner:
@@ -67,7 +72,7 @@ class Spinner:
 
 
 def stop_on_signals(stop: Callable[[], None]) -> None:
-    """Call `stop`, from a thread of its own, when SIGINT or SIGTERM comes.
+    """Call `stop`, from a thread of its own, when a signal to stop comes.
 
     Python runs its signal handlers between bytecodes of the main thread, which may wait in C++ for long;
     the wake-up descriptor is written at once, whatever thread the system delivers the signal to.
@@ -85,17 +90,41 @@ def stop_on_signals(stop: Callable[[], None]) -> None:
     threading.Thread(target=wait, daemon=True, name="signals").start()
 
 
+def stop_with_parent(stop: Callable[[], None]) -> None:
+    """Call `stop` when the process that started this one is gone, if it set `PARENT_HOLDS_STDIN`.
+
+    The parent holds the other end of our standard input, which ends with it, however it ends: a robot must
+    not drive on when the graph that supervises it was killed.
+    """
+    if os.environ.pop(PARENT_HOLDS_STDIN, "") != "1":
+        return
+
+    def wait() -> None:
+        while os.read(sys.stdin.fileno(), 1):
+            pass
+        stop()
+
+    threading.Thread(target=wait, daemon=True, name="parent").start()
+
+
 def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[str] | None = None) -> int:
     """Run one or several nodes in one executor until SIGINT or SIGTERM; returns the exit code.
 
     The nodes that were not told otherwise (`autostart`) are configured and activated; at the end they are
-    shut down in reverse order, so that each says its last word while the others still listen.
+    shut down in reverse order, and those that listen on (the recorder) hear the last words of the others.
     """
     prepare_environment()
-    rclpy.init(args=list(argv) if argv is not None else None, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        rclpy.init(
+            args=list(argv) if argv is not None else None, signal_handler_options=SignalHandlerOptions.NO
+        )
+    except RCLError as error:  # arguments or a parameter file that cannot be read
+        print(f"robustnav: {error}", file=sys.stderr)
+        return WRONG_USAGE
     spinner = Spinner(EventsExecutor())
 
     stop_on_signals(spinner.stop)
+    stop_with_parent(spinner.stop)
     nodes: list[GraphNode[Any]] = []
     try:
         for make in factories:
@@ -107,14 +136,21 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[
                 if node.state_id == State.PRIMARY_STATE_INACTIVE:
                     node.trigger_activate()
         spinner.spin()
+        for node in reversed(nodes):
+            if not node.listen_on_s:
+                _shut_down(node)
         spinner.listen(max(node.listen_on_s for node in nodes))
         return 0
     except RobustnavError as error:
         print(f"robustnav: {error}", file=sys.stderr)
-        return 2 if isinstance(error, BadParameterError) else 1
+        return WRONG_USAGE if isinstance(error, BadParameterError) else 1
     finally:
         for node in reversed(nodes):
-            if node.state_id != State.PRIMARY_STATE_FINALIZED:
-                node.trigger_shutdown()
+            _shut_down(node)
             node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _shut_down(node: GraphNode[Any]) -> None:
+    if node.state_id != State.PRIMARY_STATE_FINALIZED:
+        node.trigger_shutdown()

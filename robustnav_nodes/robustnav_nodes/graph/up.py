@@ -1,5 +1,6 @@
 """`robustnav up`: the graph until it is stopped."""
 
+import signal
 import threading
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from rich.console import Console
 
 from robustnav_nodes.graph.environment import prepare_environment
 from robustnav_nodes.graph.one_process import run_in_one_process
-from robustnav_nodes.graph.processes import ProcessGraph
+from robustnav_nodes.graph.processes import STOPPED_FIRST, ProcessGraph
 from robustnav_nodes.graph.search_graph import RunPlan
 from robustnav_nodes.graph.shared_memory import clean_shared_memory
 from robustnav_nodes.graph.spin import stop_on_signals
@@ -38,6 +39,7 @@ def run_graph(plan: RunPlan, console: Console, *, log_folder: Path, one_process:
         while not stopped.wait(TEND_PERIOD_S):
             graph.tend()
     finally:
-        codes = graph.stop(first=("recorder",))
+        codes = graph.stop(first=STOPPED_FIRST)
         clean_shared_memory()
-    return 0 if all(code == 0 for code in codes.values()) else 1
+    # one that was still starting had nothing to end cleanly
+    return 0 if all(code in (0, -signal.SIGINT) for code in codes.values()) else 1

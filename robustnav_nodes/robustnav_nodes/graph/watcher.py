@@ -8,6 +8,7 @@ from rclpy.node import Node
 
 from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.records import Decision, DialogueState, SearchState
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.node import message_class
@@ -43,6 +44,13 @@ class RunWatcher(Node):
 
     def _hear(self, name: str, read: Callable[[Any], Any], use: Callable[[Any], None]) -> None:
         row = contract.topic(name)
-        self.create_subscription(
-            message_class(row.type), name, lambda message: use(read(message)), qos.heard(row.qos)
-        )
+
+        def hear(message: Any) -> None:
+            try:
+                value = read(message)
+            except RobustnavError as error:  # somebody else's word must not end the run
+                self.get_logger().warning(f"{name}: {error}")
+            else:
+                use(value)
+
+        self.create_subscription(message_class(row.type), name, hear, qos.heard(row.qos))

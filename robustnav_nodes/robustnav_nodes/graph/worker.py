@@ -10,15 +10,20 @@ T = TypeVar("T")
 class Worker:
     """Runs one job at a time in a thread of its own; `done` is called in the executor's thread.
 
-    `call_soon` hands a function to the executor's thread (`GraphNode.call_soon`). `failed` gets the
-    exception of a job that raised. Results of jobs that were still running at `close` are dropped.
+    `call_soon` hands a function to the executor's thread (`GraphNode.call_soon`), `guard` runs `done` there
+    (the node's guard drops it while the node is inactive). `failed` gets the exception of a job that raised.
+    Results of jobs that were still running at `close` are dropped.
     """
 
     def __init__(
-        self, call_soon: Callable[[Callable[[], None]], None], failed: Callable[[BaseException], None]
+        self,
+        call_soon: Callable[[Callable[[], None]], None],
+        guard: Callable[[Callable[[], None]], None],
+        failed: Callable[[BaseException], None],
     ) -> None:
         self._pool = ThreadPoolExecutor(max_workers=1)
         self._call_soon = call_soon
+        self._guard = guard
         self._failed = failed
         self._busy = False
         self._closed = False
@@ -49,4 +54,4 @@ class Worker:
         if error is not None:
             self._failed(error)
         else:
-            done(future.result())
+            self._guard(lambda: done(future.result()))

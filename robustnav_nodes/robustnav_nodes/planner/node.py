@@ -48,7 +48,8 @@ class Planner(GraphNode[PlannerParameters]):
         self._poses = PoseHistory()
         self._space: SearchSpace | None = None
         self._session: SearchSession | None = None
-        self._target = ""
+        self._target = ""  # the latest; `~/start` searches for it again
+        self._is_wanted = False  # whether it is still to be found
         self._episode = 0
         self._doing = Doing.NOTHING
         self._since_s = 0.0
@@ -99,16 +100,18 @@ class Planner(GraphNode[PlannerParameters]):
         self._space = space
         self.health.figure("poses", len(space.graph))
         self.health.figure("candidate locations", len(space.candidates))
-        self._start()
+        if self._is_wanted:
+            self._start()
 
     # The search.
 
     def _on_target(self, target: str) -> None:
-        self._target = target.strip()
-        if self._target:
-            self._start()
-        else:
+        target = target.strip()
+        if not target:
             self._stop("the person asked to stop")
+        elif target != self._target or not self._is_wanted:  # else a dialogue that came back says it again
+            self._target, self._is_wanted = target, True
+            self._start()
 
     def _start(self) -> None:
         """Begin a new search as soon as there is a target, a floor and nothing of an old one under way."""
@@ -132,13 +135,13 @@ class Planner(GraphNode[PlannerParameters]):
         if self._session is not None and was_searching:
             # the session itself may be thinking in the worker's thread; it is left alone and dropped
             self._say_state(replace(self._session.state, phase=SearchPhase.STOPPED, message=message))
-        self._session, self._doing, self._goal = None, Doing.NOTHING, None
+        self._session, self._doing, self._goal, self._is_wanted = None, Doing.NOTHING, None, False
         here = self._poses.latest
         if was_searching and here is not None:
             self._say_goal(here.pose)
 
     def _look(self, after_ns: int) -> None:
-        self._doing, self._since_s, self._look_after_ns = Doing.LOOKING, time.monotonic(), after_ns
+        self._doing, self._since_s, self._look_after_ns = Doing.LOOKING, self._now_s(), after_ns
 
     def _look_again(self) -> None:
         """A decision failed (its reason is in /diagnostics): try once more with a newer view."""
@@ -146,8 +149,10 @@ class Planner(GraphNode[PlannerParameters]):
             self._look(self.now_ns())
 
     def _on_odometry(self, odometry: Odometry) -> None:
-        if self._poses.add(odometry) and self._doing in (Doing.LOOKING, Doing.DRIVING):
-            self._look(odometry.stamp_ns)  # simulated time began anew: the robot is somewhere else
+        if self._poses.add(odometry):
+            self._cloud = None  # simulated time began anew: the robot is somewhere else
+            if self._doing in (Doing.LOOKING, Doing.DRIVING):
+                self._look(odometry.stamp_ns)
         driving_to = self._goal if self._doing is Doing.DRIVING else None
         if driving_to is not None and has_arrived(odometry, driving_to, self.parameters):
             self._look(odometry.stamp_ns)
@@ -176,19 +181,19 @@ class Planner(GraphNode[PlannerParameters]):
         if step.decision is not None:
             self._decision.publish(wire.record_to_message(step.decision, summary=step.decision.reason))
             self.health.figure("last decision took ms", step.decision.elapsed_ms)
-        self._plan.publish(wire.path_to_message(step.path, self.now_ns()))
+        self._plan.publish(wire.path_to_message(step.path, self.now_ns(), self._frame_id()))
         here = self._poses.latest
         if step.goal is None or here is None:
-            self._doing, self._goal = Doing.NOTHING, None
+            self._doing, self._goal, self._is_wanted = Doing.NOTHING, None, False
             return
-        self._doing, self._since_s, self._goal = Doing.DRIVING, time.monotonic(), step.goal
+        self._doing, self._since_s, self._goal = Doing.DRIVING, self._now_s(), step.goal
         self._allowed_s = allowed_time_s(here.pose, step.goal, self.parameters)
         self._say_goal(step.goal)
 
     def _check(self) -> None:
         """What only time brings: a goal that was not heard, a blocked way, a belief that is silent."""
         self.health.figure("doing", self._doing)
-        waited_s = time.monotonic() - self._since_s
+        waited_s = self._now_s() - self._since_s
         if self._doing is Doing.DRIVING and self._goal is not None:
             if waited_s > self._allowed_s:
                 self.health.problem(
@@ -199,7 +204,7 @@ class Planner(GraphNode[PlannerParameters]):
                 if here is not None:
                     self._say_goal(here.pose)
                     self._look(here.stamp_ns)
-            elif time.monotonic() - self._goal_said_s > self.parameters.goal_repeat_s:
+            elif self._now_s() - self._goal_said_s > self.parameters.goal_repeat_s:
                 self._say_goal(self._goal)
         elif self._doing is Doing.LOOKING and waited_s > self.parameters.look_timeout_s:
             self.health.problem(
@@ -207,17 +212,26 @@ class Planner(GraphNode[PlannerParameters]):
                 f"no belief with the present view in {waited_s:.0f} s; do belief and detection run?",
             )
 
+    def _now_s(self) -> float:
+        """ROS time: while the simulation is paused, nothing is late."""
+        return self.now_ns() / wire.NANOSECONDS
+
+    def _frame_id(self) -> str:
+        return "map" if self._space is None else self._space.view.frame_id
+
     # Words.
 
     def _say_goal(self, goal: Pose2D) -> None:
-        self._goal_said_s = time.monotonic()
-        self._goal_pose.publish(wire.pose_to_message(StampedPose(pose=goal, stamp_ns=self.now_ns())))
+        self._goal_said_s = self._now_s()
+        stamped = StampedPose(pose=goal, stamp_ns=self.now_ns(), frame_id=self._frame_id())
+        self._goal_pose.publish(wire.pose_to_message(stamped))
 
     def _say_state(self, state: SearchState) -> None:
         self._state.publish(wire.record_to_message(state, summary=state.message))
         self.health.figure("search", state.phase)
 
     def _on_start(self, _request: Any, response: Any) -> Any:
+        self._is_wanted = bool(self._target)
         self._start()
         response.success = self._session is not None
         response.message = "" if response.success else "there is no target or no map yet"
@@ -235,7 +249,8 @@ class Planner(GraphNode[PlannerParameters]):
         graph = self._space.graph
         begins, ends = (wire.pose_from_message(pose).pose for pose in (request.start, request.goal))
         path = graph.shortest_path(graph.nearest(begins), graph.nearest(ends)) or ()
-        response.plan = wire.path_to_message([graph.pose(pose) for pose in path], self.now_ns())
+        poses = [graph.pose(pose) for pose in path]
+        response.plan = wire.path_to_message(poses, self.now_ns(), self._frame_id())
         return response
 
 

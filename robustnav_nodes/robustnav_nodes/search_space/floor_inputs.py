@@ -1,5 +1,7 @@
 """The map and the mask as they come in, until a search space can be built from them."""
 
+import numpy as np
+
 from robustnav_msgs_py.values import OccupancyMap
 
 
@@ -18,11 +20,15 @@ class FloorInputs:
         self._is_new = False
 
     def heard_map(self, floor_map: OccupancyMap, now_s: float) -> None:
-        """A map came; `now_s` from a monotonic clock."""
+        """A map came; `now_s` from a monotonic clock. One that says what the last one said is no news."""
+        if _same(floor_map, self._map):
+            return
         self._map, self._map_heard_s, self._is_new = floor_map, now_s, True
 
     def heard_mask(self, mask: OccupancyMap) -> None:
         """A candidate mask came."""
+        if _same(mask, self._mask):
+            return
         self._mask, self._is_new = mask, True
 
     def take(self, now_s: float) -> tuple[OccupancyMap, OccupancyMap | None] | None:
@@ -32,3 +38,14 @@ class FloorInputs:
             return None
         self._is_new = False
         return self._map, self._mask
+
+
+def _same(one: OccupancyMap, other: OccupancyMap | None) -> bool:
+    """Whether two maps say the same of the same floor, whenever they were stamped."""
+    if other is None or (one.resolution_m, one.origin, one.frame_id) != (
+        other.resolution_m,
+        other.origin,
+        other.frame_id,
+    ):
+        return False
+    return np.array_equal(one.cells, other.cells)
