@@ -105,7 +105,7 @@ def test_a_search_that_a_service_stopped_is_told(door: FrontDoor) -> None:
     )
     news = door.hear_search(stopped)
     assert news is not None
-    assert (news.answer, news.target) == ("I stopped looking for the mug: by a service call.", "")
+    assert (news.answer, news.target) == ("I stopped looking for the mug: stopped by a service call.", "")
 
 
 def test_why_is_answered_from_the_decision(door: FrontDoor) -> None:

@@ -38,6 +38,9 @@ class ManagerParameters:
     answer_timeout_s: float = parameter(
         3.0, "after which an unanswered question is asked again", unit="s", low=0.5, high=120.0
     )
+    missing_s: float = parameter(
+        10.0, "nodes that are not active for longer are a problem", unit="s", low=0.5, high=600.0
+    )
 
 
 class ManagedNode:
@@ -109,6 +112,7 @@ class Manager(GraphNode[ManagerParameters]):
     def configure(self) -> None:
         """Make the clients of every managed node."""
         self._up = True
+        self._whole_s = time.monotonic()
         self._nodes = [
             ManagedNode(
                 name,
@@ -132,6 +136,11 @@ class Manager(GraphNode[ManagerParameters]):
                 self._advance(standing[0], _DOWN)
         for node in self._nodes:
             self.health.figure(node.name, node.state_name)
+        missing = [node.name for node in self._nodes if node.state != State.PRIMARY_STATE_ACTIVE]
+        if not missing or not self._up:
+            self._whole_s = time.monotonic()
+        elif time.monotonic() - self._whole_s > self.parameters.missing_s:
+            self.health.problem("graph", f"not active: {', '.join(missing)}")
 
     def _advance(self, node: ManagedNode, transitions: dict[int, int]) -> None:
         node.advance(transitions, self.parameters.answer_timeout_s, self.health.problem)
