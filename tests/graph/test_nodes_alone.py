@@ -46,6 +46,15 @@ def running(package: str, executable: str, *arguments: str) -> Iterator["subproc
         process.communicate()
 
 
+def namespace(row: contract.NodeRow) -> str:
+    """One that no other test has used: DDS may still tell of nodes that are gone."""
+    return f"/{row.executable}_alone"
+
+
+def full_name(topic: contract.Topic, row: contract.NodeRow) -> str:
+    return topic.name if topic.name.startswith("/") else f"{namespace(row)}/{topic.name}"
+
+
 def wait_for_line(process: "subprocess.Popen[str]", words: str) -> None:
     assert process.stdout is not None
     heard = []
@@ -59,8 +68,9 @@ def wait_for_line(process: "subprocess.Popen[str]", words: str) -> None:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.executable)
 def test_a_node_alone(row: contract.NodeRow, number: signal.Signals, bench: Bench, tmp_path: Path) -> None:
+    alone = ["-r", f"__ns:={namespace(row)}"]
     where = ["-p", f"folder:={tmp_path}"] if row.executable == "recorder" else []
-    with running(row.package, row.executable, *where) as process:
+    with running(row.package, row.executable, *alone, *where) as process:
         wait_for_line(process, f"{row.executable} is active")
         if number is signal.SIGINT:  # once for each node is enough
             check_contract(bench, row)
@@ -77,13 +87,13 @@ def check_contract(bench: Bench, row: contract.NodeRow) -> None:
 
     def found(names_and_types: Callable[[str, str], list[tuple[str, list[str]]]]) -> dict[str, str]:
         try:
-            every = dict(names_and_types(row.executable, "/"))
+            every = dict(names_and_types(row.executable, namespace(row)))
         except NodeNameNonExistentError:  # not discovered yet
             return {}
         return {name: types[0] for name, types in every.items() if name not in OF_EVERY_NODE}
 
     def listed(topics: tuple[contract.Topic, ...]) -> dict[str, str]:
-        return {f"/{topic.name.lstrip('/')}": topic.type for topic in topics}
+        return {full_name(topic, row): topic.type for topic in topics}
 
     says, hears = listed(contract.spoken_by(row.executable)), listed(contract.heard_by(row.executable))
     outside = bench.outside
@@ -101,12 +111,14 @@ def check_contract(bench: Bench, row: contract.NodeRow) -> None:
 
 def check_parameters(bench: Bench, row: contract.NodeRow) -> None:
     """What the declaration says is what a caller is told."""
-    told = bench.call(ListParameters, f"{row.executable}/list_parameters", ListParameters.Request())
+    told = bench.call(
+        ListParameters, f"{namespace(row)}/{row.executable}/list_parameters", ListParameters.Request()
+    )
     declared = {spec.name: spec for spec in specs(node_class(row.package, row.executable).declaration)}
     assert set(declared) <= set(told.result.names)
     request = DescribeParameters.Request(names=list(declared))
     for described in bench.call(
-        DescribeParameters, f"{row.executable}/describe_parameters", request
+        DescribeParameters, f"{namespace(row)}/{row.executable}/describe_parameters", request
     ).descriptors:
         spec = declared[described.name]
         assert described.description == spec.full_description
@@ -122,7 +134,7 @@ def check_health(bench: Bench, row: contract.NodeRow) -> None:
 
     def hear(message: Any) -> None:
         found = [wire.status_from_message(status) for status in message.status]
-        statuses.extend(status for status in found if status.name == f"/{row.executable}")
+        statuses.extend(status for status in found if status.name == f"{namespace(row)}/{row.executable}")
 
     bench.outside.create_subscription(DiagnosticArray, "/diagnostics", hear, 10)
     bench.wait(lambda: statuses, "diagnostics")

@@ -122,7 +122,7 @@ def test_stamps_and_frames(fresh: Simulation) -> None:
     frames = {frame.color.frame_id, frame.depth.frame_id, frame.model.frame_id, truth.frame_id}
     assert frames == {"camera_optical_frame"}
     assert fresh.laser_scan().frame_id == "laser"
-    assert (fresh.odometry().frame_id, fresh.odometry().child_frame_id) == ("odom", "base_link")
+    assert (fresh.odometry().frame_id, fresh.odometry().child_frame_id) == ("map", "base_link")
     assert frame.color.pixels.shape == (240, 320, 3)
     assert frame.depth.depth_m.shape == (240, 320)
 
