@@ -74,7 +74,11 @@ class GraphNode(LifecycleNode, Generic[P]):
             True,
             ParameterDescriptor(description="configure and activate at start; false where a manager does it"),
         )
-        self._bound: NodeParameters[P] = NodeParameters(self, self.declaration, self._parameters_changed)
+        try:
+            self._bound: NodeParameters[P] = NodeParameters(self, self.declaration, self._parameters_changed)
+        except RobustnavError:
+            self.destroy_node()  # or its shared memory would stay behind
+            raise
         self._service_change_state.callback = self._on_change_state
         self._diagnostics = self.create_publisher(
             DiagnosticArray, "/diagnostics", qos.offered(contract.topic("/diagnostics").qos)
