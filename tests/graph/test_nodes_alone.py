@@ -141,11 +141,20 @@ def check_health(bench: Bench, row: contract.NodeRow) -> None:
     assert statuses[-1].level == OK, statuses[-1]
 
 
-def test_a_parameter_out_of_range_is_a_sentence_and_an_exit_code() -> None:
-    with running("robustnav_nodes", "planner", "-p", "discount:=1.5") as process:
+@pytest.mark.parametrize(
+    ("package", "executable", "given", "words"),
+    [
+        ("robustnav_nodes", "planner", "discount:=1.5", "'discount' is 1.5; it must lie in 0.01 .. 0.999999"),
+        ("bags", "recorder", "patience_s:=-1.0", "'patience_s' is -1.0; it must lie in 0 .. 60 s"),
+    ],
+)
+def test_a_parameter_out_of_range_is_a_sentence_and_an_exit_code(
+    package: str, executable: str, given: str, words: str
+) -> None:
+    with running(package, executable, "-p", given) as process:
         output, _ = process.communicate(timeout=DEADLINE_S)
     assert process.returncode == 2
-    assert output.strip().endswith("parameter 'discount' is 1.5; it must lie in 0.01 .. 0.999999")
+    assert output.strip().endswith(f"parameter {words}")
     assert "Traceback" not in output
 
 

@@ -77,7 +77,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         try:
             self._bound: NodeParameters[P] = NodeParameters(self, self.declaration, self._parameters_changed)
         except RobustnavError:
-            self.destroy_node()  # or its shared memory would stay behind
+            super().destroy_node()  # or its shared memory would stay behind; the subclass is not made yet
             raise
         self._service_change_state.callback = self._on_change_state
         self._diagnostics = self.create_publisher(
