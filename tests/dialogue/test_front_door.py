@@ -1,6 +1,7 @@
 """The front door decides what is searched for, answers from records, and never forgets its manners."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -95,6 +96,23 @@ def test_a_dialogue_that_was_started_again_takes_the_search_over(door: FrontDoor
     found = door.hear_search(SearchState(phase=SearchPhase.FOUND, target="mug", episode=1))
     assert found is not None
     assert found.answer.startswith("I found")
+
+
+def test_a_late_word_of_the_search_does_not_undo_stop(door: FrontDoor) -> None:
+    door.hear("find the mug", None)
+    door.hear("stop", None)
+    assert door.hear_search(SEARCHING) is None  # it began before the planner heard of the stop
+    assert door.hear_search(replace(SEARCHING, step=5)) is None
+    assert door.state.target == ""
+
+
+def test_a_search_that_a_service_began_is_taken_over(door: FrontDoor) -> None:
+    door.hear("find the mug", None)
+    door.hear_search(SEARCHING)
+    door.hear_search(SearchState(phase=SearchPhase.FOUND, target="mug", episode=1))
+    taken = door.hear_search(replace(SEARCHING, episode=2))
+    assert taken is not None
+    assert taken.target == "mug"
 
 
 def test_a_search_that_a_service_stopped_is_told(door: FrontDoor) -> None:

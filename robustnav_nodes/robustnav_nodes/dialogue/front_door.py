@@ -30,6 +30,7 @@ class FrontDoor:
         self._search = SearchState()
         self._decision: Decision | None = None
         self._state = DialogueState()
+        self._asked_for = ""  # the target of a search that has not begun yet
 
     @property
     def state(self) -> DialogueState:
@@ -48,13 +49,16 @@ class FrontDoor:
         """How the search stands; returns what to tell the person, and the end of the target with the search.
 
         The target does not outlive its search: it is latched, and a node that starts later must not begin
-        to look for what was found already. A dialogue that was started again takes over a search that goes
-        on, and says its target again, since the word it had latched is gone.
+        to look for what was found already. A search that begins without having been asked for here (the
+        dialogue was started again, or the planner's service was called) is taken over, and its target said to
+        all. One that was asked for is not: its first word may come after the person has said "stop".
         """
         before, self._search = self._search, search
-        if search.phase in UNDER_WAY and not self._state.target:
-            self._state = replace(self._state, target=search.target)
-            return Reaction(answer="", target=search.target)
+        if search.phase in UNDER_WAY and search.episode != before.episode:
+            asked_for, self._asked_for = self._asked_for, ""
+            if search.target not in (asked_for, self._state.target):
+                self._state = replace(self._state, target=search.target)
+                return Reaction(answer="", target=search.target)
         same = (search.episode, search.phase) == (before.episode, before.phase)
         if same or search.target != self._state.target or not search.target:
             return None
@@ -79,6 +83,7 @@ class FrontDoor:
             reaction = self._react(read_line(line, self._parameters.max_line_chars), robot)
         except UnreadableLineError as error:
             reaction = Reaction(answer=str(error))
+        self._asked_for = reaction.target or self._asked_for
         target = self._state.target if reaction.target is None else reaction.target
         self._state = replace(
             self._state,

@@ -53,9 +53,8 @@ class NodeParameters(Generic[P]):
                     IntegerRange(from_value=int(spec.low), to_value=int(spec.high), step=1)
                 ]
         given = self._given.get(spec.name)
-        is_given = (
-            given is not None and given.value is not None
-        )  # rcl reads an empty list in YAML as "not set"
+        # rcl reads an empty list in a file as "not set"
+        is_given = given is not None and given.value is not None
         if given is not None and is_given:
             spec.checked(given.value)  # a clearer sentence than rclpy's exception
         self._node.declare_parameter(spec.name, spec.default, descriptor, ignore_override=not is_given)
