@@ -25,13 +25,13 @@ class ErringDetector:
     seed: int
 
     def __post_init__(self) -> None:
-        sees_target = self.space.observability.seers_of(self.target).mean()
+        sees_target = self.space.observability.column(self.target).mean()
         odds = (1.0 - STATISTICS.precision) / STATISTICS.precision
         self.p_false_alarm = STATISTICS.recall * sees_target * odds
 
     def detections(self, pose: int) -> np.ndarray:
         rng = np.random.default_rng([self.seed, pose])
-        in_view = self.space.observability.seen_from(pose)
+        in_view = self.space.observability.row(pose)
         candidates, found = self.space.candidates, []
         if in_view[self.target] and rng.random() < STATISTICS.recall:
             place = np.array([candidates.x_m[self.target], candidates.y_m[self.target]])
@@ -48,7 +48,7 @@ def search(home, parameters, seed: int) -> tuple[SearchState, bool, list[int]]:
     graph = home.graph
     while True:
         target, pose = int(rng.integers(len(home.candidates))), int(rng.integers(len(graph)))
-        sees_target = home.observability.seers_of(target)
+        sees_target = home.observability.column(target)
         if graph.steps_from(pose)[sees_target].min() >= 3:
             break
     detector = ErringDetector(home, target, seed)

@@ -1,3 +1,4 @@
+import dataclasses
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ from hypothesis import strategies as st
 
 from robustnav_msgs_py.values import Pose2D
 from robustnav_nodes.planner.docking import destination_pose
+from robustnav_nodes.search_space.observability import Observability
 
 
 @pytest.fixture
@@ -50,7 +52,7 @@ def test_the_destination_sees_the_location_and_can_be_reached(home, location, st
     start %= len(home.graph)
     found = destination_pose(home, home.graph, start, location, 0.8)
     assert found is not None
-    assert home.observability.seers_of(location)[found]
+    assert home.observability.column(location)[found]
     assert np.isfinite(home.graph.steps_from(start)[found])
     assert destination_pose(home, home.graph, found, location, 0.8) == found
 
@@ -59,7 +61,10 @@ def test_a_location_that_no_pose_sees_is_faced(space_of):
     """Range 0.5 m and more, and a robot that can only stand 0.3 m away: it faces the location from there."""
     space = space_of("#####", "#..o#", "#####", range_min_m=0.5)
     location, graph = 0, space.graph
-    space.observability.bits[:] = 0
+    nothing_seen = Observability.of_rows(
+        np.zeros(len(graph) + 1, dtype=np.int64), np.zeros(0, dtype=np.int32), len(space.candidates)
+    )
+    space = dataclasses.replace(space, observability=nothing_seen)
     found = destination_pose(space, graph, 0, location, 0.3)
     pose = graph.pose(found)
     assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx((0.75, 0.45, 0.0))

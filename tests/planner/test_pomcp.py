@@ -63,7 +63,7 @@ def test_illegal_actions_never_enter_a_rollout(home, parameters_with):
     model = search_model(
         closed, home.observability, 5, np.zeros(len(closed), dtype=bool), parameters_with(simulations=64)
     )
-    target = int(np.nonzero(~home.observability.seen_from(5) & ~home.observability.seen_from(6))[0][0])
+    target = int(np.nonzero(~home.observability.row(5) & ~home.observability.row(6))[0][0])
     plan(SEARCH, model, np.array([target]), parameters_with(simulations=64), np.random.default_rng(0))
     assert set(np.nonzero(model.last_visit >= 0)[0].tolist()) <= {5, 6}
 
@@ -89,7 +89,7 @@ def test_a_target_seen_in_one_turn_is_worth_the_reward(home, parameters_with):
     graph, observability = home.graph, home.observability
     for start, target in itertools.product(range(0, len(graph), 5), range(len(home.candidates))):
         ends = graph.successors[start]
-        sees = [end != NOWHERE and bool(observability.seers_of(target)[end]) for end in ends]
+        sees = [end != NOWHERE and bool(observability.column(target)[end]) for end in ends]
         if sees == [False, False, True, False]:
             break
     chosen = decide(home, parameters_with(), start, [target])
@@ -102,7 +102,7 @@ def test_a_pose_visited_before_costs_ten(home, parameters_with):
     """One step deep, the target out of sight, an action is worth -1, and -10 where the robot has been."""
     graph = home.graph
     start = next(i for i in range(len(graph)) if len(graph.legal_actions(i)) == 4)
-    hidden = ~np.any([home.observability.seen_from(i) for i in graph.successors[start]], axis=0)
+    hidden = ~np.any([home.observability.row(i) for i in graph.successors[start]], axis=0)
     visited = np.zeros(len(graph), dtype=bool)
     visited[[start, graph.successors[start, Action.BACKWARD]]] = True
     target = int(np.nonzero(hidden)[0][0])
@@ -120,7 +120,7 @@ def test_going_back_and_forth_counts_as_a_revisit(home, parameters_with):
         and all(len(graph.legal_actions(int(end))) == 4 for end in graph.successors[i])
     )
     reach = {start} | {int(b) for a in graph.successors[start] for b in graph.successors[a]}
-    hidden = ~np.any([home.observability.seen_from(i) for i in reach | set(graph.successors[start])], axis=0)
+    hidden = ~np.any([home.observability.row(i) for i in reach | set(graph.successors[start])], axis=0)
     target = int(np.nonzero(hidden)[0][0])
     parameters = parameters_with(max_depth=2, simulations=20_000, exploration=1e6)
     chosen = decide(home, parameters, start, [target])

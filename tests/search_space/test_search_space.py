@@ -18,9 +18,9 @@ def test_observability_is_what_the_camera_sees_from_each_pose(two_rooms, paramet
     assert rows.shape == (len(space.graph), len(space.candidates))
     assert 0.0 < rows.mean() < 0.5
     for pose in range(0, len(rows), 7):
-        np.testing.assert_array_equal(space.observability.seen_from(pose), rows[pose])
+        np.testing.assert_array_equal(space.observability.row(pose), rows[pose])
     for candidate in range(rows.shape[1]):
-        np.testing.assert_array_equal(space.observability.seers_of(candidate), rows[:, candidate])
+        np.testing.assert_array_equal(space.observability.column(candidate), rows[:, candidate])
     np.testing.assert_array_equal(space.observability.seen_from_somewhere(), rows.any(axis=0))
 
 
@@ -55,7 +55,7 @@ def test_too_large_a_table_is_refused(two_rooms):
     floor_map = OccupancyMap(cells=cells, resolution_m=0.1, origin=ORIGIN)
     mask = OccupancyMap(cells=cells + np.int8(100), resolution_m=0.5, origin=ORIGIN)
     limits = SearchSpaceParameters(max_observability_mb=1, max_poses=10**6)
-    with pytest.raises(BadMapError, match=r"need \d+ MB, more than max_observability_mb = 1"):
+    with pytest.raises(BadMapError, match=r"hold more than \d+ sights, more than max_observability_mb = 1"):
         SearchSpace.build(floor_map, mask, limits)
 
 

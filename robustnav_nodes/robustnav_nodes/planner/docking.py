@@ -25,7 +25,7 @@ def destination_pose(
     steps = graph.steps_from(start)
     reachable = np.isfinite(steps)
 
-    choice = reachable & space.observability.seers_of(location)
+    choice = reachable & space.observability.column(location)
     if not choice.any():
         choice = reachable & (off_axis <= 0.5 * (2.0 * np.pi / graph.headings) + 1e-9)
     if not choice.any():

@@ -12,20 +12,24 @@ from robustnav_nodes.search_space.compiled import compiled
 from robustnav_nodes.search_space.observability import Observability
 from robustnav_nodes.search_space.pose_graph import NOWHERE, Action, PoseGraph
 
-POSE, TARGET, SIMULATION = 0, 1, 2  # entries of a state
+POSE, SIMULATION = 0, 1  # entries of a state
 NOT_SEEN, SEEN = 0, 1  # observations
-ALWAYS, NEVER = -1, -2  # entries of last_visit that are no simulation's number
+ALWAYS, NEVER = -1, -2  # entries of the scratch arrays that are no simulation's number
 
 
 class SearchModel(NamedTuple):
-    """State: (pose, location of the target, number of the simulation). Seeing the target ends it.
+    """State: (pose, number of the simulation). Seeing the target ends it.
 
-    successors: int32 [n, 4]; bits: uint8 [n, ceil(k / 8)], as in Observability; start: the robot's pose.
+    successors: int32 [n, 4]; seers_start, seers: as in Observability; start: the robot's pose.
+    last_seer: int32 [n], scratch: the last simulation whose target is seen from there. Marking the poses
+    that see it once is cheaper than asking a table of n x k at every step.
     last_visit: int32 [n], scratch: ALWAYS where the robot has been, else the last simulation that was there.
     """
 
     successors: NDArray[np.int32]
-    bits: NDArray[np.uint8]
+    seers_start: NDArray[np.int64]
+    seers: NDArray[np.int32]
+    last_seer: NDArray[np.int32]
     last_visit: NDArray[np.int32]
     start: int
     reward_seen: float
@@ -45,7 +49,9 @@ def search_model(
     last_visit[start] = ALWAYS
     return SearchModel(
         successors=graph.successors,
-        bits=observability.bits,
+        seers_start=observability.seers_start,
+        seers=observability.seers,
+        last_seer=np.full(len(graph), NEVER, dtype=np.int32),
         last_visit=last_visit,
         start=start,
         reward_seen=parameters.reward_seen,
@@ -56,8 +62,9 @@ def search_model(
 
 def _begin(model: SearchModel, particle: int, simulation: int, state: State) -> None:
     state[POSE] = model.start
-    state[TARGET] = particle
     state[SIMULATION] = simulation
+    for sight in range(model.seers_start[particle], model.seers_start[particle + 1]):
+        model.last_seer[model.seers[sight]] = simulation
 
 
 def _is_legal(model: SearchModel, state: State, action: int) -> bool:
@@ -67,8 +74,7 @@ def _is_legal(model: SearchModel, state: State, action: int) -> bool:
 def _step(model: SearchModel, state: State, action: int, rng: np.random.Generator) -> tuple[int, float, bool]:
     pose = model.successors[state[POSE], action]
     state[POSE] = pose
-    target = state[TARGET]
-    if (model.bits[pose, target >> 3] >> (target & 7)) & 1:
+    if model.last_seer[pose] == state[SIMULATION]:
         return SEEN, model.reward_seen, True
     last_visit = model.last_visit[pose]
     if last_visit == ALWAYS or last_visit == state[SIMULATION]:
@@ -92,4 +98,4 @@ def _simulate_search(
     simulate(model, tree, particles, first_simulation, last_simulation, rng)
 
 
-SEARCH = Problem(actions=len(Action), observations=2, state_size=3, simulate=_simulate_search)
+SEARCH = Problem(actions=len(Action), observations=2, state_size=2, simulate=_simulate_search)

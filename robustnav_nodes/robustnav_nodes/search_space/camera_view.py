@@ -161,12 +161,27 @@ def line_of_sight(scene: Scene, camera_x: float, camera_y: float, x_m: float, y_
 
 @compiled
 def look_from_all(
-    scene: Scene, x_m: Float64, y_m: Float64, yaw_rad: Float64, bits: NDArray[np.uint8]
-) -> None:
-    """Write into `bits` (uint8 [n, ceil(k / 8)], all 0) what each of n poses has in view, eight to a byte."""
+    scene: Scene, x_m: Float64, y_m: Float64, yaw_rad: Float64, limit: int
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """How many candidates each of n poses has in view (int64 [n]), and which, pose after pose (int32 [s]).
+
+    Stops at the first pose after which there are more than `limit`.
+    """
+    count = np.zeros(len(x_m), dtype=np.int64)
+    found = np.empty(1024, dtype=np.int32)
+    total = 0
     seen = np.zeros(len(scene.candidate_x_m), dtype=np.bool_)
     for pose in range(len(x_m)):
         look(scene, x_m[pose], y_m[pose], yaw_rad[pose], seen)
         for j in range(len(seen)):
             if seen[j]:
-                bits[pose, j >> 3] |= np.uint8(1 << (j & 7))
+                if total == len(found):
+                    longer = np.empty(2 * total, dtype=np.int32)
+                    longer[:total] = found
+                    found = longer
+                found[total] = j
+                total += 1
+                count[pose] += 1
+        if total > limit:
+            break
+    return count, found[:total].copy()
