@@ -228,7 +228,7 @@ def write_search(talk: Talk, flat: Flat, told: Told) -> list[Pose2D]:
     for step, index in enumerate(path):
         pose = space.graph.pose(index)
         stamp_ns = step * STEP_NS
-        in_view = space.view.visible(pose)
+        in_view = space.visible(pose)
         last = step == len(path) - 1
         for _ in range(3):  # a robot that stands tells its pose again and again
             talk.say("odom", conversions.odometry_to_message(_odometry(pose, stamp_ns)))
@@ -312,7 +312,7 @@ def _decision(step: int, pose: Pose2D, goal: Pose2D) -> Decision:
 
 
 def _visible(flat: Flat, told: Told, space: SearchSpace, pose: Pose2D, stamp_ns: int) -> VisibleObjects:
-    seen = [o for o in flat.objects if space.view.visible(pose)[_nearest(space, o.x_m, o.y_m)]]
+    seen = [o for o in flat.objects if space.visible(pose)[_nearest(space, o.x_m, o.y_m)]]
     count = len(seen)
     return VisibleObjects(
         position_m=_optical(pose, [(o.x_m, o.y_m, o.z_m) for o in seen]),

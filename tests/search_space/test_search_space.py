@@ -14,7 +14,7 @@ ORIGIN = Pose2D(x_m=0.0, y_m=0.0)
 
 def test_observability_is_what_the_camera_sees_from_each_pose(two_rooms, parameters):
     space = SearchSpace.build(*two_rooms, parameters)
-    rows = np.array([space.view.visible(space.graph.pose(i)) for i in range(len(space.graph))])
+    rows = np.array([space.visible(space.graph.pose(i)) for i in range(len(space.graph))])
     assert rows.shape == (len(space.graph), len(space.candidates))
     assert 0.0 < rows.mean() < 0.5
     for pose in range(0, len(rows), 7):

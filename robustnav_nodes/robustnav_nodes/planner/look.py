@@ -52,7 +52,7 @@ def look_around(
     Raises BadMessageError where `cloud` is not about the candidates of `space`.
     """
     _check(space, cloud)
-    in_view = space.view.visible(robot)
+    in_view = space.visible(robot)
     return Look(
         pose=graph.nearest(robot),
         probability=cloud.probability,
@@ -64,7 +64,7 @@ def look_around(
 
 
 def _check(space: SearchSpace, cloud: BeliefCloud) -> None:
-    frame_id, position_m = space.view.frame_id, space.candidates.position_m
+    frame_id, position_m = space.frame_id, space.candidates.position_m
     if cloud.frame_id != frame_id:
         raise BadMessageError(
             f"the belief is in frame {cloud.frame_id!r}, the planner's map in {frame_id!r}: "

@@ -217,7 +217,7 @@ class Planner(GraphNode[PlannerParameters]):
         return self.now_ns() / wire.NANOSECONDS
 
     def _frame_id(self) -> str:
-        return "map" if self._space is None else self._space.view.frame_id
+        return "map" if self._space is None else self._space.frame_id
 
     # Words.
 

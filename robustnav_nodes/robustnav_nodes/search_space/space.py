@@ -1,9 +1,9 @@
-"""The search space of one floor: map, poses, candidate locations, and what sees what."""
+"""The search space of one floor: poses, candidate locations, and what sees what."""
 
 from dataclasses import dataclass
 
 from robustnav_msgs_py.errors import BadMapError
-from robustnav_msgs_py.values import OccupancyMap, Pose2D
+from robustnav_msgs_py.values import Bool, OccupancyMap, Pose2D
 from robustnav_nodes.search_space.camera_view import CameraView, build_camera_view
 from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability, build_observability
@@ -13,16 +13,17 @@ from robustnav_nodes.search_space.pose_graph import PoseGraph, build_pose_graph
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SearchSpace:
-    """Everything about the place that does not change while one search goes on; shared freely by threads."""
+    """Everything about the place that does not change while one search goes on; shared freely by threads.
 
-    view: CameraView
+    view: what a robot sees that stands between the poses; None where there is no map to tell it from, as in
+    a space that was read from a table.
+    """
+
     graph: PoseGraph
+    candidates: Candidates
     observability: Observability
-
-    @property
-    def candidates(self) -> Candidates:
-        """The candidate locations H."""
-        return self.view.candidates
+    view: CameraView | None = None
+    frame_id: str = "map"
 
     @classmethod
     def build(
@@ -46,4 +47,16 @@ class SearchSpace:
                 f"{len(graph)} poses: check range_min_m, range_max_m and horizontal_view_rad, and that the "
                 "robot and the candidates are on the same side of the walls"
             )
-        return cls(view=view, graph=graph, observability=observability)
+        return cls(
+            graph=graph,
+            candidates=view.candidates,
+            observability=observability,
+            view=view,
+            frame_id=view.frame_id,
+        )
+
+    def visible(self, robot: Pose2D) -> Bool:
+        """bool [k]: what a robot whose centre is at `robot` has in view."""
+        if self.view is None:
+            return self.observability.row(self.graph.nearest(robot))
+        return self.view.visible(robot)
