@@ -16,9 +16,11 @@ class DetectionRecord:
 
     Detection i was made at pose pose[i] (ascending; a pose may have several, or none). It says that the
     target is near candidates candidate[start[i] : start[i + 1]], with densities weight[...], the largest 1.
+    statistics: what is known of this detector beforehand, precision and recall for this target.
     pose: int32 [d]; start: int64 [d + 1]; candidate: int32 [w]; weight: float64 [w], positive.
     """
 
+    statistics: ClassStatistics
     pose: NDArray[np.int32]
     start: NDArray[np.int64]
     candidate: NDArray[np.int32]
@@ -36,7 +38,7 @@ class DetectionRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SearchTarget:
-    """One thing to look for: what the detector's statistics promise, and what it says from each pose.
+    """One thing to look for, from where it can be seen, and what each detector says about it.
 
     in_view: bool [n], the poses that have the target in view: a search that stops at one of them succeeded.
     destination: bool [n], the poses at which a search with docking should stop; None where nobody says.
@@ -44,7 +46,6 @@ class SearchTarget:
     """
 
     label: str
-    statistics: ClassStatistics
     in_view: Bool
     destination: Bool | None
     detections: dict[str, DetectionRecord]
