@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from robustnav_msgs_py.values import BeliefCloud
 from robustnav_nodes.belief.location_belief import LocationBelief
 from robustnav_nodes.belief.observation import detected_factor, missed_factor
+from robustnav_nodes.search_space.candidates import Candidates
 
 FLOOR = 1e-6
 
@@ -98,3 +99,64 @@ def test_the_cloud_is_a_copy_with_the_stamp(in_a_row):
     assert (cloud.stamp_ns, cloud.frame_id) == (42, "map")
     cloud.probability[0] = 0.9
     np.testing.assert_allclose(belief.probability, 0.2)
+
+
+WEIGHTS = st.lists(st.floats(1e-12, 1.0), min_size=1, max_size=12)
+PLACES = st.lists(st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)), min_size=1, max_size=30)
+
+
+def belief_on(candidates: Candidates, weights: list[float]) -> LocationBelief:
+    probability = np.array(weights) / np.sum(weights)
+    return LocationBelief(candidates=candidates, probability=probability)
+
+
+def at(places: list[tuple[float, float]]) -> Candidates:
+    x_m, y_m = np.array(places).T
+    return Candidates(x_m=x_m, y_m=y_m, size_m=0.2)
+
+
+@given(weights=WEIGHTS, places=PLACES)
+@settings(max_examples=100, deadline=None)
+def test_c4_a_belief_carried_anywhere_never_collapses(in_a_row, weights, places):
+    carried = belief_on(in_a_row(len(weights)), weights).carried_to(at(places))
+    assert len(carried.probability) == len(places)
+    assert is_sound(carried.probability)
+
+
+@given(weights=WEIGHTS, new=PLACES, seed=st.integers(0, 1000))
+@settings(max_examples=100, deadline=None)
+def test_what_is_known_of_places_to_each_other_outlives_a_growing_map(in_a_row, weights, new, seed):
+    """The old candidates stand among new ones, in any order, each a little beside where it was."""
+    rng = np.random.default_rng(seed)
+    before = belief_on(in_a_row(len(weights)), weights)
+    moved = [(0.2 * j + dx, dy) for j, (dx, dy) in enumerate(rng.uniform(-0.09, 0.09, (len(weights), 2)))]
+    order = rng.permutation(len(moved) + len(new))
+    carried = before.carried_to(at([(moved + new)[i] for i in order]))
+    of_old = carried.probability[np.argsort(order)[: len(moved)]]
+    np.testing.assert_allclose(of_old / of_old.sum(), before.probability)
+
+
+def test_a_new_place_gets_the_share_that_every_place_began_with(in_a_row):
+    """Three candidates at 1/2, 1/4, 1/4; two new ones weigh 1/3 each: the sum is 5/3."""
+    carried = belief_on(in_a_row(3), [2.0, 1.0, 1.0]).carried_to(in_a_row(5))
+    np.testing.assert_allclose(carried.probability, np.array([1 / 2, 1 / 4, 1 / 4, 1 / 3, 1 / 3]) * 3 / 5)
+
+
+def test_a_place_keeps_what_the_patch_that_it_lies_on_had(in_a_row):
+    """Patches of 0.2 m, the middle of the first at 0: 0.09 lies on it, 0.11 on the second, -0.11 on none."""
+    before = belief_on(in_a_row(2), [3.0, 1.0])
+    carried = before.carried_to(at([(0.09, 0.09), (0.11, -0.09), (-0.11, 0.0), (0.0, 0.11)]))
+    weights = np.array([3 / 4, 1 / 4, 1 / 2, 1 / 2])
+    np.testing.assert_allclose(carried.probability, weights / weights.sum())
+
+
+@given(places=PLACES)
+@settings(max_examples=50, deadline=None)
+def test_where_nothing_is_known_a_grown_map_changes_nothing(in_a_row, places):
+    carried = LocationBelief.uniform(in_a_row(7)).carried_to(at(places))
+    np.testing.assert_allclose(carried.probability, 1 / len(places))
+
+
+def test_a_map_of_another_place_begins_anew(in_a_row):
+    carried = belief_on(in_a_row(3), [5.0, 1.0, 1.0]).carried_to(at([(9.0, 9.0), (9.2, 9.0)]))
+    np.testing.assert_allclose(carried.probability, 1 / 2)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py import conversions as wire
-from robustnav_msgs_py.values import Detections, OccupancyMap, Odometry, Pose2D
+from robustnav_msgs_py.values import BeliefCloud, Detections, OccupancyMap, Odometry, Pose2D
 from robustnav_nodes.belief.node import Belief
 from tests.bench import Bench
 
@@ -104,29 +104,66 @@ def test_a_map_of_ten_million_cells_is_used(bench: Bench, node: Belief) -> None:
     bench.wait(lambda: clouds, "a belief")
 
 
+def standing(stamp_ns: int) -> Odometry:
+    """Where half of the table is in view."""
+    pose = Pose2D(x_m=0.6, y_m=2.2, yaw_rad=0.25)
+    return Odometry(pose=pose, linear_m_s=0.0, angular_rad_s=0.0, stamp_ns=stamp_ns)
+
+
+class Search:
+    """A search for a mug in the room, up to a first look at the table that finds nothing."""
+
+    def __init__(self, bench: Bench, node: Belief) -> None:
+        self.bench = bench
+        self.clouds = bench.hear("belief/cloud")
+        names = ("map", "search/candidates", "search/target", "odom", "detections", "detections/labels")
+        self.speakers = {name: bench.speaker(name) for name in names}
+        self.show(*table_in(room()))
+        self.speakers["detections/labels"].publish(wire.labels_to_message(("mug",)))
+        self.speakers["search/target"].publish(wire.text_to_message("mug"))
+        bench.wait(lambda: self.clouds, "the first belief")
+        self.first = self.belief
+        self.speakers["odom"].publish(wire.odometry_to_message(standing(5 * S)))
+        bench.wait(lambda: node._poses.latest, "the odometry")
+        self.speakers["detections"].publish(wire.detections_to_message(nothing_detected(5 * S)))
+        bench.wait(lambda: self.belief.stamp_ns == 5 * S, "the belief after the view")
+
+    def show(self, floor: OccupancyMap, mask: OccupancyMap) -> None:
+        self.speakers["search/candidates"].publish(wire.map_to_message(mask))
+        self.speakers["map"].publish(wire.map_to_message(floor))
+
+    @property
+    def belief(self) -> BeliefCloud:
+        """The latest that was said."""
+        return wire.belief_from_message(self.clouds[-1])
+
+
 def test_looking_without_success_moves_the_belief(bench: Bench, node: Belief) -> None:
-    floor, mask = table_in(room())
-    clouds = bench.hear("belief/cloud")
-    speakers = {
-        name: bench.speaker(name)
-        for name in ("map", "search/candidates", "search/target", "odom", "detections", "detections/labels")
-    }
-    speakers["search/candidates"].publish(wire.map_to_message(mask))
-    speakers["map"].publish(wire.map_to_message(floor))
-    speakers["detections/labels"].publish(wire.labels_to_message(("mug",)))
-    speakers["search/target"].publish(wire.text_to_message("mug"))
-    bench.wait(lambda: clouds, "the first belief")
-    assert clouds[-1].header.stamp.sec == 0
-    facing_half_of_the_table = Odometry(
-        pose=Pose2D(x_m=0.6, y_m=2.2, yaw_rad=0.25), linear_m_s=0.0, angular_rad_s=0.0, stamp_ns=5 * S
-    )
-    speakers["odom"].publish(wire.odometry_to_message(facing_half_of_the_table))
-    bench.wait(lambda: node._poses.latest, "the odometry")
-    speakers["detections"].publish(wire.detections_to_message(nothing_detected(5 * S)))
-    bench.wait(lambda: clouds[-1].header.stamp.sec == 5, "the belief after the view")
-    before, after = (wire.belief_from_message(message).probability for message in (clouds[0], clouds[-1]))
-    assert np.ptp(before) == 0.0
-    assert np.ptp(after) > 0.0
+    search = Search(bench, node)
+    assert search.first.stamp_ns == 0
+    assert np.ptp(search.first.probability) == 0.0
+    assert np.ptp(search.belief.probability) > 0.0
+
+
+def test_a_map_that_grows_keeps_what_is_known(bench: Bench, node: Belief) -> None:
+    """The room turns out to be 4 m x 4 m, with a second table; what is known of the first one stays."""
+    search = Search(bench, node)
+    known = search.belief
+    floor, mask = table_in(room(80))
+    floor.cells[62:74, 60:72] = mask.cells[62:74, 60:72] = 100
+    search.show(floor, mask)
+    bench.wait(lambda: len(search.belief.probability) == 2 * len(known.probability), "the larger belief")
+    grown = search.belief
+    of_first_table = grown.probability[grown.position_m[:, 0] < 2.7]
+    np.testing.assert_allclose(of_first_table / of_first_table.sum(), known.probability)
+    assert grown.stamp_ns == 5 * S
+
+
+def test_time_that_begins_anew_forgets_what_was_known(bench: Bench, node: Belief) -> None:
+    search = Search(bench, node)
+    search.speakers["odom"].publish(wire.odometry_to_message(standing(1 * S)))
+    bench.wait(lambda: search.belief.stamp_ns == 0, "a new belief")
+    assert np.ptp(search.belief.probability) == 0.0
 
 
 def test_a_belief_without_a_target_is_an_empty_map(bench: Bench, node: Belief) -> None:

@@ -73,6 +73,24 @@ def test_places_that_make_no_sense_are_refused_and_do_not_use_up_the_view(tracke
     assert tracker.observe(WEST, SILENT) is Verdict.COUNTED
 
 
+def test_on_a_grown_map_it_goes_on_with_what_it_knows(tracker):
+    """A fifth candidate at x = 5.5 m weighs 1/4 beside 1/6, 1/6, 1/6, 1/2; a view counts once."""
+    mask = np.zeros((10, 40), dtype=np.int8)
+    mask[5, [5, 10, 15, 25, 27]] = 100
+    grown = build_camera_view(
+        OccupancyMap(cells=np.zeros((40, 160), dtype=np.int8), resolution_m=0.05, origin=ORIGIN),
+        OccupancyMap(cells=mask, resolution_m=0.2, origin=ORIGIN),
+        PARAMETERS,
+    )
+    tracker.observe(WEST, SILENT)
+    tracker.move_to(grown)
+    weights = np.array([1 / 6, 1 / 6, 1 / 6, 1 / 2, 1 / 4])
+    np.testing.assert_allclose(tracker.belief.probability, weights / weights.sum())
+    assert tracker.observe(WEST, SILENT) is Verdict.SEEN_BEFORE
+    assert tracker.observe(Pose2D(x_m=2.1, y_m=1.1), SILENT) is Verdict.COUNTED
+    assert np.argmax(tracker.belief.probability) != 4  # now in view of the grown map, and not found there
+
+
 def test_one_detection_does_not_end_a_search_that_has_only_begun(tracker):
     """With floor >= 1 / confidence no probability gets past confidence / k from a uniform belief."""
     rng = np.random.default_rng(1)

@@ -83,3 +83,21 @@ def test_ten_million_cells_are_refused_quickly(floor, masked, sentence, two_room
     tracemalloc.stop()
     assert took_s < 5.0
     assert peak < 2e9
+
+
+def test_a_hundred_thousand_poses_and_candidates(two_rooms, parameters):
+    """A hall of 200 m x 200 m with a pillar and a low shelf every 2 m; 100 s where each pose looks at all."""
+    SearchSpace.build(*two_rooms, parameters)  # compiled beforehand
+    tile, marks = np.zeros((40, 40), dtype=np.int8), np.zeros((40, 40), dtype=np.int8)
+    tile[0:8, 0:8] = 100  # the pillar
+    tile[12:32, 12:20] = marks[12:32, 12:20] = 100  # the shelf, ten patches
+    floor_map, mask = (
+        OccupancyMap(cells=np.tile(cells, (100, 100)), resolution_m=0.05, origin=ORIGIN)
+        for cells in (tile, marks)
+    )
+    began = time.monotonic()
+    space = SearchSpace.build(floor_map, mask, SearchSpaceParameters(spacing_m=1.65))
+    took_s = time.monotonic() - began
+    assert len(space.graph) > 90_000
+    assert len(space.candidates) == 100_000
+    assert took_s < 20.0

@@ -5,9 +5,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from robustnav_msgs_py.values import BeliefCloud, Float64
 from robustnav_nodes.search_space.candidates import Candidates
+
+_ROUNDING_M = 1e-6  # what lies exactly on the edge of a patch lies on it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,6 +41,25 @@ class LocationBelief:
             return self
         raised = np.maximum(product / total, probability_floor / len(product))
         return dataclasses.replace(self, probability=raised / raised.sum())
+
+    def carried_to(self, candidates: Candidates) -> "LocationBelief":
+        """This belief on the candidates of a map that has grown or changed.
+
+        A candidate whose middle lies on the patch of an old one (the nearest, where it lies on several) keeps
+        that one's probability; one where none was has the prior's share, 1/k of the old k. All are then
+        scaled to sum to one. So what is known of places to each other stays, and a wholly other map begins
+        at the uniform belief.
+        """
+        old = self.candidates
+        places = KDTree(np.stack([old.x_m, old.y_m], axis=1))
+        _, nearest = places.query(
+            np.stack([candidates.x_m, candidates.y_m], axis=1),
+            p=np.inf,  # a patch is a square
+            distance_upper_bound=0.5 * old.size_m + _ROUNDING_M,
+        )
+        with_new = np.append(self.probability, 1.0 / len(old))  # a query without an answer gives len(old)
+        probability = with_new[nearest]
+        return LocationBelief(candidates=candidates, probability=probability / probability.sum())
 
     def normalised_entropy(self) -> float:
         """Entropy over its maximum log k: 1 where nothing is known, near 0 where one location is sure."""

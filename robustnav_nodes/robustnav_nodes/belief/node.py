@@ -32,6 +32,9 @@ class Belief(GraphNode[BeliefParameters]):
     `belief/cloud` after every observation, whether it counted or not: its stamp is that of the last
     observation looked at, which is how the planner knows that its view is in. Says `belief/map` and
     `belief/entropy` when the belief changed. Serves `belief/get_map` and `~/reset`.
+
+    A map that grows or changes takes over what is known; one in another frame, or time that begins anew, does
+    not.
     """
 
     executable = "belief"
@@ -64,7 +67,8 @@ class Belief(GraphNode[BeliefParameters]):
         self.every(limits.floor_check_s, self._build, steady=True)
 
     def _on_odometry(self, odometry: Odometry) -> None:
-        self._poses.add(odometry)
+        if self._poses.add(odometry):
+            self._start()  # simulated time began anew: what was observed belongs to another run
         if self._view is not None:
             check_frame(odometry, self._view.frame_id)
 
@@ -77,9 +81,14 @@ class Belief(GraphNode[BeliefParameters]):
             self._builder.submit(partial(build_camera_view, *inputs, self.parameters), self._on_view)
 
     def _on_view(self, view: CameraView) -> None:
-        self._view = view
+        earlier, self._view = self._view, view
         self.health.figure("candidate locations", len(view.candidates))
-        self._start()
+        if self._tracker is None or earlier is None or earlier.frame_id != view.frame_id:
+            self._start()
+            return
+        self._tracker.move_to(view)
+        self._say_cloud()
+        self._say_summary()
 
     def _on_target(self, target: str) -> None:
         if target.strip() != self._target:  # said again by a dialogue that was started again

@@ -28,6 +28,11 @@ class BeliefTracker:
         self._gate = ViewGate(parameters)
         self.belief = LocationBelief.uniform(view.candidates)
 
+    def move_to(self, view: CameraView) -> None:
+        """Go on with what is known on another view of the same floor, whose map has grown or changed."""
+        self._view = view
+        self.belief = self.belief.carried_to(view.candidates)
+
     def observe(
         self,
         robot: Pose2D,

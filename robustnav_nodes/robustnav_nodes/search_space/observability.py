@@ -1,22 +1,27 @@
 """The observability table L: which pose of the graph has which candidate location in view."""
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
-from robustnav_msgs_py.errors import BadMapError
+from robustnav_msgs_py.errors import BadMapError, BadMessageError
 from robustnav_msgs_py.values import Bool
-from robustnav_nodes.search_space.camera_view import CameraView, look_from_all
+from robustnav_nodes.search_space.camera_view import CameraView
+from robustnav_nodes.search_space.compiled import compiled
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
 from robustnav_nodes.search_space.pose_graph import PoseGraph
+from robustnav_nodes.search_space.sight import look_from_all
 
 Int32 = NDArray[np.int32]
 Int64 = NDArray[np.int64]
 
 _MB = 1_000_000
 _BYTES_PER_SIGHT = 2 * np.dtype(np.int32).itemsize
+_POSES_AT_ONCE = 1024  # one thread's turn: milliseconds to tenths of a second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,16 +40,25 @@ class Observability:
 
     @classmethod
     def of_rows(cls, seen_start: Int64, seen: Int32, candidates: int) -> "Observability":
-        """From the candidates that each pose sees, ascending; there are `candidates` of them in all."""
-        shape = (len(seen_start) - 1, candidates)
-        rows = sparse.csr_array((np.ones(len(seen), dtype=np.bool_), seen, seen_start), shape=shape)
-        columns = rows.tocsc()
-        return cls(
-            seen_start=seen_start.astype(np.int64),
-            seen=seen.astype(np.int32),
-            seers_start=columns.indptr.astype(np.int64),
-            seers=columns.indices.astype(np.int32),
-        )
+        """From the candidates that each pose sees, ascending; there are `candidates` of them in all.
+
+        Raises BadMessageError where the rows do not follow each other or name a candidate that is not there.
+        """
+        seen_start = np.asarray(seen_start, dtype=np.int64)
+        seen = np.asarray(seen, dtype=np.int32)
+        ends_fit = len(seen_start) > 0 and seen_start[0] == 0 and seen_start[-1] == len(seen)
+        if not ends_fit or bool(np.any(np.diff(seen_start) < 0)):
+            raise BadMessageError(
+                f"the rows of an observability table must begin at 0, ascend and end at {len(seen)}, the "
+                "number of its sights"
+            )
+        if len(seen) and not 0 <= int(seen.min()) <= int(seen.max()) < candidates:
+            raise BadMessageError(
+                f"an observability table of {candidates} candidate locations names candidates "
+                f"{seen.min()} .. {seen.max()}; they count from 0"
+            )
+        seers_start, seers = _columns(seen_start, seen, candidates)
+        return cls(seen_start=seen_start, seen=seen, seers_start=seers_start, seers=seers)
 
     @property
     def poses(self) -> int:
@@ -82,11 +96,14 @@ class Observability:
 
 
 def build_observability(
-    view: CameraView, graph: PoseGraph, parameters: SearchSpaceParameters
+    view: CameraView, graph: PoseGraph, parameters: SearchSpaceParameters, *, threads: int | None = None
 ) -> Observability:
-    """Look from every pose of `graph`. Raises BadMapError where the table would be too large."""
+    """Look from every pose of `graph`, with as many threads as there are processors unless told otherwise.
+
+    The table is the same whatever the number of threads. Raises BadMapError where it would be too large.
+    """
     limit = parameters.max_observability_mb * _MB // _BYTES_PER_SIGHT
-    count, seen = look_from_all(view.scene, graph.x_m, graph.y_m, graph.yaw_rad, limit)
+    count, seen = _look_in_turns(view, graph, limit, threads or os.cpu_count() or 1)
     if len(seen) > limit:
         raise BadMapError(
             f"{len(graph)} poses x {len(view.candidates)} candidate locations hold more than "
@@ -95,3 +112,40 @@ def build_observability(
         )
     seen_start = np.concatenate([[0], np.cumsum(count)])
     return Observability.of_rows(seen_start, seen, len(view.candidates))
+
+
+def _look_in_turns(view: CameraView, graph: PoseGraph, limit: int, threads: int) -> tuple[Int64, Int32]:
+    """What `look_from_all` says of the poses of `graph`, some at a time; stops soon after `limit`."""
+    counts, seen, total = [], [], 0
+    with ThreadPoolExecutor(threads, thread_name_prefix="look") as pool:
+        turns = [
+            pool.submit(look_from_all, view.scene, graph.x_m[i:j], graph.y_m[i:j], graph.yaw_rad[i:j], limit)
+            for i, j in pairwise([*range(0, len(graph), _POSES_AT_ONCE), len(graph)])
+        ]
+        for turn in turns:
+            count, of_these = turn.result()
+            counts.append(count)
+            seen.append(of_these)
+            total += len(of_these)
+            if total > limit:
+                pool.shutdown(cancel_futures=True)
+                break
+    return np.concatenate(counts), np.concatenate(seen)
+
+
+@compiled
+def _columns(seen_start: Int64, seen: Int32, candidates: int) -> tuple[Int64, Int32]:
+    """The other way round: where the seers of each candidate start (int64 [k + 1]), and which they are."""
+    start = np.zeros(candidates + 1, dtype=np.int64)
+    for j in seen:
+        start[j + 1] += 1
+    for j in range(candidates):
+        start[j + 1] += start[j]
+    seers = np.empty(len(seen), dtype=np.int32)
+    filled = start[:-1].copy()
+    for pose in range(len(seen_start) - 1):
+        for at in range(seen_start[pose], seen_start[pose + 1]):
+            j = seen[at]
+            seers[filled[j]] = pose
+            filled[j] += 1
+    return start, seers

@@ -47,12 +47,12 @@ class SearchSpaceParameters:
     max_start_distance_m: float = parameter(
         1.0, "farthest that the robot may start from a pose where it fits", unit="m", low=0.0, high=10.0
     )
-    max_poses: int = parameter(60_000, "larger maps are refused", low=1, high=10_000_000)
+    max_poses: int = parameter(250_000, "larger maps are refused", low=1, high=10_000_000)
     max_candidates: int = parameter(
-        8_000, "maps with more candidate locations are refused", low=1, high=1_000_000
+        200_000, "maps with more candidate locations are refused", low=1, high=1_000_000
     )
     max_observability_mb: int = parameter(
-        128, "larger observability tables are refused", unit="MB", low=1, high=16_384
+        512, "larger observability tables are refused", unit="MB", low=1, high=16_384
     )
 
     mask_wait_s: float = parameter(

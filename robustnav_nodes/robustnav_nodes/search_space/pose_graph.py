@@ -37,9 +37,10 @@ class Action(IntEnum):
 class PoseGraph:
     """Graph G (thesis 3.2.1.3): n poses and the pose that each action leads to.
 
-    x_m, y_m, yaw_rad: float64 [n], in the map's frame, yaw in 0..2 pi. Poses of one place follow each
-    other, `headings` of them, counter-clockwise: pose = place * headings + heading.
+    x_m, y_m, yaw_rad: float64 [n], in the map's frame, yaw in 0..2 pi. Poses of one place have the same x_m
+    and y_m, to the last bit.
     successors: int32 [n, 4], one column per Action, NOWHERE (-1) where the robot does not fit.
+    headings: how many turns make a full one; a place may lack some of these poses.
     """
 
     x_m: Float64
@@ -59,15 +60,19 @@ class PoseGraph:
 
     def nearest(self, pose: Pose2D) -> int:
         """The pose at the place nearest to `pose` (straight line) with the heading nearest to its own."""
-        dx = self.x_m[:: self.headings] - pose.x_m
-        dy = self.y_m[:: self.headings] - pose.y_m
-        place = int(np.argmin(dx * dx + dy * dy))
-        heading = round(pose.yaw_rad / (math.tau / self.headings)) % self.headings
-        return place * self.headings + heading
+        dx, dy = self.x_m - pose.x_m, self.y_m - pose.y_m
+        there = self._poses_beside(int(np.argmin(dx * dx + dy * dy)))
+        turn_rad = np.abs(np.remainder(self.yaw_rad[there] - pose.yaw_rad + math.pi, math.tau) - math.pi)
+        return int(there[np.argmin(turn_rad)])
 
     def legal_actions(self, index: int) -> tuple[Action, ...]:
         """The actions that lead somewhere from pose `index`."""
         return tuple(action for action in Action if self.successors[index, action] != NOWHERE)
+
+    def largest_part(self) -> int:
+        """A pose of the largest set of poses that can all reach each other."""
+        _, part = csgraph.connected_components(self._links(), directed=True, connection="strong")
+        return int(np.argmax(part == np.bincount(part).argmax()))
 
     def steps_from(self, start: int) -> Float64:
         """float64 [n]: fewest actions from `start` to each pose, +Inf where there is no way."""
@@ -91,16 +96,17 @@ class PoseGraph:
         Where both are the same place, only the turn between these two poses goes.
         """
         successors = self.successors.copy()
-        place_a, place_b = a // self.headings, b // self.headings
-        if place_a == place_b:
+        rows_a, rows_b = self._poses_beside(a), self._poses_beside(b)
+        if b in rows_a:
             rows_a, rows_b = np.array([a]), np.array([b])
-        else:
-            rows_a = np.arange(place_a * self.headings, (place_a + 1) * self.headings)
-            rows_b = np.arange(place_b * self.headings, (place_b + 1) * self.headings)
         for begins, ends in ((rows_a, rows_b), (rows_b, rows_a)):
             links = successors[begins]
             successors[begins] = np.where(np.isin(links, ends), NOWHERE, links)
         return dataclasses.replace(self, successors=successors)
+
+    def _poses_beside(self, index: int) -> NDArray[np.int64]:
+        """int64 [m]: the poses at the place of pose `index`, itself among them."""
+        return np.nonzero((self.x_m == self.x_m[index]) & (self.y_m == self.y_m[index]))[0]
 
     def _links(self) -> sparse.csr_matrix:
         begins, action = np.nonzero(self.successors != NOWHERE)

@@ -1,5 +1,6 @@
 """The search space of one floor: poses, candidate locations, and what sees what."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from robustnav_msgs_py.errors import BadMapError
@@ -9,6 +10,8 @@ from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability, build_observability
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
 from robustnav_nodes.search_space.pose_graph import PoseGraph, build_pose_graph
+
+LookFromAll = Callable[[CameraView, PoseGraph, SearchSpaceParameters], Observability]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,15 +35,18 @@ class SearchSpace:
         candidate_mask: OccupancyMap | None,
         parameters: SearchSpaceParameters,
         start: Pose2D | None = None,
+        look_from_all: LookFromAll = build_observability,
     ) -> "SearchSpace":
         """The search space of `floor_map`; with `start`, only what a robot there can reach.
+
+        look_from_all: makes the observability table; a cache may take the place of the one that builds it.
 
         Raises BadMapError, with a sentence that says what to do, where nothing can be searched: no free
         floor, no candidates or none that can be seen, the robot fits nowhere, or the map is too large.
         """
         view = build_camera_view(floor_map, candidate_mask, parameters)
         graph = build_pose_graph(view.grid, parameters, start)
-        observability = build_observability(view, graph, parameters)
+        observability = look_from_all(view, graph, parameters)
         if not observability.seen_from_somewhere().any():
             raise BadMapError(
                 f"none of the {len(view.candidates)} candidate locations can be seen from any of the "

@@ -1,0 +1,81 @@
+"""`robustnav data`: bring search scenes in from other people's formats, and take them out."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from robustnav_nodes.benchmarks.search_scene import SearchScene
+
+data_app = typer.Typer(help="Build or import data sets.", no_args_is_help=True)
+import_app = typer.Typer(help="Bring data in from other formats.", no_args_is_help=True)
+export_app = typer.Typer(help="Take data out to other formats.", no_args_is_help=True)
+data_app.add_typer(import_app, name="import")
+data_app.add_typer(export_app, name="export")
+
+SceneFile = Annotated[Path, typer.Option("--out", help="scene file to write (.npz); must not exist")]
+
+
+@import_app.command("pomp")
+def import_pomp_command(
+    folder: Annotated[Path, typer.Argument(help="the folder input_pomp_be_pd")],
+    out: SceneFile,
+    target_id: Annotated[int, typer.Option(min=0, help="the object of its GaussObsvMatrix.txt")],
+) -> None:
+    """Import a scene of the released POMP-BE-PD planner."""
+    from robustnav_nodes.benchmarks.import_pomp import import_pomp
+
+    _write(import_pomp(folder, target_id), out)
+
+
+@import_app.command("avd")
+def import_avd_command(
+    folder: Annotated[Path, typer.Argument(help="the folder of a scene, such as Home_001_1")], out: SceneFile
+) -> None:
+    """Import a scene of the Active Vision Dataset."""
+    from robustnav_nodes.benchmarks.import_avd import import_avd
+
+    _write(import_avd(folder), out)
+
+
+@export_app.command("pomp")
+def export_pomp_command(
+    scene: Annotated[Path, typer.Argument(help="scene file (.npz)")],
+    target: Annotated[str, typer.Option(help="label of the target")],
+    out: Annotated[Path, typer.Option(help="folder to write; must not exist")],
+    detector: Annotated[str, typer.Option(help="whose detections")] = "noisy",
+) -> None:
+    """Export a scene and one of its targets for the released POMP-BE-PD planner."""
+    from robustnav_nodes.benchmarks.export_pomp import TARGET_ID, export_pomp
+    from robustnav_nodes.benchmarks.scene_file import read_scene
+
+    read = read_scene(scene)
+    export_pomp(read, target, detector, out)
+    _say(f"{out}: {summary(read)}; {target} is --target_id={TARGET_ID}")
+
+
+def summary(scene: SearchScene) -> str:
+    """What a scene holds, in one line: "scene Home_001_1, 1192 poses, 840 candidates, 1 target (jar)"."""
+    poses, candidates = len(scene.space.graph), len(scene.space.candidates)
+    labels = ", ".join(target.label for target in scene.targets)
+    return (
+        f"scene {scene.name}, {_count(poses, 'pose')}, {_count(candidates, 'candidate')}, "
+        f"{_count(len(scene.targets), 'target')} ({labels})"
+    )
+
+
+def _count(count: int, thing: str) -> str:
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def _write(scene: SearchScene, path: Path) -> None:
+    from robustnav_nodes.benchmarks.scene_file import write_scene
+
+    write_scene(scene, path)
+    _say(f"{path}: {summary(scene)}")
+
+
+def _say(line: str) -> None:
+    Console(highlight=False, soft_wrap=True).print(escape(line))
