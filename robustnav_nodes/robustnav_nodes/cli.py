@@ -12,6 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 from robustnav_msgs_py.errors import BadParameterError, RobustnavError
+from robustnav_nodes.benchmarks.bench_commands import bench_app
+from robustnav_nodes.benchmarks.data_commands import data_app
 
 app = typer.Typer(
     help="Ask a robot to find an object; it works although the detector lies.",
@@ -21,6 +23,8 @@ app = typer.Typer(
 )
 bag_app = typer.Typer(help="Look into recorded runs.", no_args_is_help=True)
 app.add_typer(bag_app, name="bag")
+app.add_typer(bench_app, name="bench")
+app.add_typer(data_app, name="data")
 
 DEMO_SPEED = 4.0
 DEMO_LIMIT_S = 110.0  # at that speed; slower ones take longer

@@ -1,17 +1,20 @@
+import doctest
 import itertools
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import robustnav_nodes.planner.problem
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.values import Pose2D
-from robustnav_nodes.planner.pomcp import plan, simulate
-from robustnav_nodes.planner.problem import Problem, implement
+from robustnav_nodes.benchmarks.pomdp_problems import rocksample, tiger
+from robustnav_nodes.planner.pomcp import _log, plan
+from robustnav_nodes.planner.pomcp_parameters import PomcpParameters
+from robustnav_nodes.planner.problem import Problem, implement, step
 from robustnav_nodes.planner.search_problem import SEARCH, search_model
 from robustnav_nodes.search_space.pose_graph import NOWHERE, Action
 
@@ -33,6 +36,19 @@ def test_same_seed_same_decision(home, parameters_with, seed, start):
     assert one.action == other.action
     np.testing.assert_array_equal(one.values, other.values)
     np.testing.assert_array_equal(one.visits, other.visits)
+
+
+def test_a_seed_gives_the_same_decision_on_every_machine():
+    """To the last bit; these numbers change only where the search is meant to change."""
+    known, rng = tiger(), np.random.default_rng(0)
+    parameters = PomcpParameters(simulations=256, exploration=known.spread, discount=known.discount)
+    chosen = plan(known.problem, known.model, known.first_states(256, rng), parameters, rng)
+    assert [value.hex() for value in chosen.values.tolist()] == [
+        "-0x1.0e01889c3ace9p+6",
+        "-0x1.74c8e2941b978p+6",
+        "-0x1.401d701891998p+7",
+    ]
+    assert chosen.visits.tolist() == [205, 45, 6]
 
 
 @given(seed=st.integers(0, 1000), start=st.integers(0, 10_000))
@@ -161,21 +177,11 @@ def test_no_way_out_is_refused(home, parameters_with):
         decide(home, parameters_with(), 0, [0], graph=closed)
 
 
-@numba.njit
-def simulate_any(model, tree, particles, first, last, rng):
-    """Binds any problem to the solver; not kept on disk."""
-    simulate(model, tree, particles, first, last, rng)
-
-
 class CountingModel(NamedTuple):
     """Five actions of which some are legal; counts which are taken. Nothing is ever observed or won."""
 
     taken: np.ndarray
     legal: np.ndarray
-
-
-def _begin(model, particle, simulation, state):
-    state[0] = particle
 
 
 def _counting_is_legal(model, state, action):
@@ -187,57 +193,122 @@ def _counting_step(model, state, action, rng):
     return 0, 0.0, False
 
 
-implement(CountingModel, begin=_begin, is_legal=_counting_is_legal, step=_counting_step)
-COUNTING = Problem(actions=5, observations=1, state_size=1, simulate=simulate_any)
+implement(CountingModel, is_legal=_counting_is_legal, step=_counting_step)
+COUNTING = Problem(actions=5, observations=1, state_size=1)
+
+
+def counting(*legal):
+    return CountingModel(taken=np.zeros(5, dtype=np.int64), legal=np.isin(np.arange(5), legal))
 
 
 def test_rollouts_are_uniform_over_legal_actions(parameters_with):
-    model = CountingModel(taken=np.zeros(5, dtype=np.int64), legal=np.array([False, True, False, True, True]))
+    model = counting(1, 3, 4)
     plan(COUNTING, model, np.array([0]), parameters_with(simulations=512), np.random.default_rng(0))
     assert model.taken.sum() == 512 * 300
     assert model.taken[[0, 2]].tolist() == [0, 0]
     np.testing.assert_allclose(model.taken[[1, 3, 4]] / model.taken.sum(), 1 / 3, rtol=0.02)
 
 
+def test_every_simulated_step_is_counted(parameters_with):
+    model = counting(1, 3, 4)
+    parameters = parameters_with(simulations=100, batch_simulations=8)
+    assert plan(COUNTING, model, np.array([0]), parameters, np.random.default_rng(0)).steps == 100 * 300
+    assert model.taken.sum() == 100 * 300
+
+
 def test_a_node_is_made_at_its_actions_second_visit(parameters_with):
     """With one legal action the first simulation makes no node, and each of the others makes one."""
-    model = CountingModel(
-        taken=np.zeros(5, dtype=np.int64), legal=np.array([False, True, False, False, False])
-    )
-    chosen = plan(COUNTING, model, np.array([0]), parameters_with(simulations=20), np.random.default_rng(0))
+    parameters = parameters_with(simulations=20)
+    chosen = plan(COUNTING, counting(1), np.array([0]), parameters, np.random.default_rng(0))
     assert chosen.nodes == 1 + 19
 
 
-class TigerModel(NamedTuple):
-    """The tiger problem (Kaelbling et al. 1998): hidden behind the left (0) or the right door (1)."""
+class BanditModel(NamedTuple):
+    """One step; action a pays a. Actions from `first_preferred` on begin with two visits worth 100 each."""
 
-    p_hears_right: float
-
-
-LISTEN, OPEN_LEFT, OPEN_RIGHT = 0, 1, 2
+    first_preferred: int
 
 
-def _every_action(model, state, action):
-    return True
+def _bandit_step(model, state, action, rng):
+    return 0, float(action), True
 
 
-def _tiger_step(model, state, action, rng):
-    if action == LISTEN:
-        return (state[0] if rng.random() < model.p_hears_right else 1 - state[0]), -1.0, False
-    opens_tiger = (action == OPEN_LEFT) == (state[0] == 0)
-    return 0, (-100.0 if opens_tiger else 10.0), True
+def _bandit_prior(model, state, action):
+    return (2, 100.0) if action >= model.first_preferred else (0, 0.0)
 
 
-implement(TigerModel, begin=_begin, is_legal=_every_action, step=_tiger_step)
-TIGER = Problem(actions=3, observations=2, state_size=1, simulate=simulate_any)
+implement(BanditModel, step=_bandit_step, prior=_bandit_prior)
+BANDIT = Problem(actions=4, observations=1, state_size=1)
 
 
-@pytest.mark.parametrize(
-    ("tiger_is_left", "action"), [(0.5, LISTEN), (0.85, LISTEN), (0.99, OPEN_RIGHT), (0.01, OPEN_LEFT)]
-)
-def test_the_solver_serves_other_problems(parameters_with, tiger_is_left, action):
-    """Ending at the first door: at 0.97 and surer, opening the other door beats listening once more."""
-    parameters = parameters_with(simulations=20_000, exploration=100.0, max_depth=20)
-    rng = np.random.default_rng(3)
-    particles = (rng.random(20_000) > tiger_is_left).astype(np.int64)
-    assert plan(TIGER, TigerModel(p_hears_right=0.85), particles, parameters, rng).action == action
+def test_a_prior_counts_like_visits_and_fades():
+    parameters = PomcpParameters(simulations=8, exploration=0.0)
+    chosen = plan(BANDIT, BanditModel(2), np.array([0]), parameters, np.random.default_rng(0))
+    # The two without a prior are tried once each; the other six go to where the mean is highest.
+    assert chosen.visits.tolist()[:2] == [1, 1]
+    assert chosen.visits[2:].sum() == 4 + 6
+    visits = chosen.visits[2:] - 2
+    np.testing.assert_allclose(chosen.values[2:], (200.0 + visits * [2.0, 3.0]) / (2 + visits))
+    many = PomcpParameters(simulations=100_000, exploration=1.0)
+    chosen = plan(BANDIT, BanditModel(2), np.array([0]), many, np.random.default_rng(0))
+    assert chosen.action == 3
+    assert chosen.values[3] == pytest.approx(3.0, abs=0.01)
+
+
+def test_a_prior_makes_no_more_than_one_node_a_simulation():
+    known = rocksample(7, 8, prior=(10, 20.0))
+    parameters = PomcpParameters(simulations=256, discount=known.discount, max_depth=90)
+    rng = np.random.default_rng(0)
+    chosen = plan(known.problem, known.model, known.first_states(256, rng), parameters, rng)
+    assert chosen.nodes <= 256 + 1
+
+
+class CornerModel(NamedTuple):
+    """Three steps east end it; the rollout policy goes east, and never west where that would be legal."""
+
+    seen: np.ndarray
+
+
+def _corner_step(model, state, action, rng):
+    model.seen[action] += 1
+    state[0] += 1 if action == 0 else -1
+    return 0, -1.0, state[0] == 3
+
+
+def _corner_rollout_step(model, state, actions, rng):
+    _, reward, ended = step(model, state, 0, rng)
+    return reward, ended
+
+
+implement(CornerModel, step=_corner_step, rollout_step=_corner_rollout_step)
+
+
+def test_a_problem_may_bring_its_rollout_policy():
+    """From each first action on, the way is straight: -1 a step, three steps or five."""
+    model = CornerModel(np.zeros(2, dtype=np.int64))
+    problem = Problem(actions=2, observations=1, state_size=1)
+    parameters = PomcpParameters(simulations=8, exploration=1e6, discount=0.5)
+    chosen = plan(problem, model, np.array([0]), parameters, np.random.default_rng(0))
+    assert chosen.action == 0
+    assert chosen.values[0] == pytest.approx(-1.75, abs=0.2)
+
+
+@pytest.mark.parametrize("states", [np.array([7, 7]), np.array([[7, 0], [7, 0]])])
+def test_a_particle_may_be_a_whole_state(states):
+    """What `begin` does not say is said by the particle: a number, or a row."""
+    model = CornerModel(np.zeros(2, dtype=np.int64))
+    problem = Problem(actions=2, observations=1, state_size=states.ndim)
+    parameters = PomcpParameters(simulations=8, max_depth=4)
+    chosen = plan(problem, model, states - 5, parameters, np.random.default_rng(0))
+    assert chosen.values[0] == -1.0  # one step east of 2
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 1000, 1025, 10**6, 2**31 - 1])
+def test_the_logarithm_is_the_logarithm(count):
+    assert _log(count) == pytest.approx(math.log(count), rel=1e-15, abs=1e-16)
+
+
+def test_the_example_in_the_documentation_works():
+    failed, tried = doctest.testmod(robustnav_nodes.planner.problem)
+    assert tried > 10
+    assert failed == 0

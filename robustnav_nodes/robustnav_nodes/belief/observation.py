@@ -20,23 +20,28 @@ def missed_factor(in_view: Bool, f1: float) -> Float64:
     return _summing_to_one(factor)
 
 
-def detected_factor(
-    candidates: Candidates, in_view: Bool, detected_m: Float64, sigma_m: float, floor: float
-) -> Float64:
-    """The factor d after the detector fired at places `detected_m` (float64 [m, 2], m > 0, map frame).
+def place_densities(candidates: Candidates, in_view: Bool, detected_m: Float64, sigma_m: float) -> Float64:
+    """How well detections at `detected_m` (float64 [m, 2], map frame) fit each candidate: float64 [m, k].
 
-    Inside the view a normal density of `sigma_m` around the nearest detection, its peak scaled to one;
-    `floor` (> 0) everywhere that this does not reach. Of several detections in one view each may be the
+    In view a normal density of `sigma_m` around the detection, its peak scaled to one; 0 outside the view.
+    """
+    seen = np.nonzero(in_view)[0]
+    dx = candidates.x_m[np.newaxis, seen] - detected_m[:, 0, np.newaxis]
+    dy = candidates.y_m[np.newaxis, seen] - detected_m[:, 1, np.newaxis]
+    densities = np.zeros((len(detected_m), len(in_view)))
+    densities[:, seen] = np.exp(-0.5 * (dx * dx + dy * dy) / sigma_m**2)
+    return densities
+
+
+def detected_factor(in_view: Bool, densities: Float64, floor: float) -> Float64:
+    """The factor d after the detector fired, with `densities` (float64 [m, k], m > 0, see place_densities).
+
+    `floor` (> 0) everywhere that these do not reach. Of several detections in one view each may be the
     target, so a location takes the largest, not the product.
 
     C2: the thesis has 0 outside the view. A factor of 0 is for ever: one false alarm would delete the truth.
     """
-    dx = candidates.x_m[:, np.newaxis] - detected_m[np.newaxis, :, 0]
-    dy = candidates.y_m[:, np.newaxis] - detected_m[np.newaxis, :, 1]
-    nearest_squared = np.min(dx * dx + dy * dy, axis=1)
-    normal = np.exp(-0.5 * nearest_squared / sigma_m**2)
-    factor = np.where(in_view, np.maximum(normal, floor), floor)
-    return _summing_to_one(factor)
+    return _summing_to_one(np.where(in_view, np.maximum(densities.max(axis=0), floor), floor))
 
 
 def usable_f1(f1: float, f1_min: float, f1_max: float) -> float:

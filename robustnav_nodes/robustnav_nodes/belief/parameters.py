@@ -14,17 +14,34 @@ class BeliefParameters(SearchSpaceParameters):
     detection_sigma_m: float = parameter(
         0.5, "standard deviation of a detected place on the floor", unit="m", low=0.05, high=5.0
     )
+    evidence: str = parameter(
+        "likelihood",
+        "what a look is worth: a likelihood ratio, or the thesis' F1 factors",
+        choices=("likelihood", "f1"),
+    )
+    recall_min: float = parameter(0.05, "a detector's recall counts as at least this", low=0.001, high=0.999)
+    recall_max: float = parameter(0.98, "a detector's recall counts as at most this", low=0.001, high=0.9999)
+    recall_loss: float = parameter(
+        0.0, "part of the recall that is lost at range_max_m, in proportion nearer by", low=0.0, high=1.0
+    )
+    false_alarms_min: float = parameter(
+        1e-3,
+        "a detector counts as firing at nothing at least this often",
+        unit="per look",
+        low=1e-9,
+        high=1.0,
+    )
     detection_floor: float = parameter(
         0.02,
-        "weight of a place far from a detection over one at it; from 1 / (the planner's confidence) upwards, "
-        "one detection alone does not end a search that has only begun",
+        "f1: weight of a place far from a detection over one at it; from 1 / (the planner's confidence) "
+        "upwards, one detection alone does not end a search that has only begun",
         low=1e-6,
         high=1.0,
     )
     f1_min: float = parameter(
         0.5, "a detector's F1 counts as at least this; at 0.5 its silence says nothing", low=0.5, high=1.0
     )
-    f1_max: float = parameter(0.99, "a detector's F1 counts as at most this", low=0.5, high=0.999999)
+    f1_max: float = parameter(0.99, "f1: a detector's F1 counts as at most this", low=0.5, high=0.999999)
     probability_floor: float = parameter(
         1e-6, "no place's probability falls below this part of 1/k", low=1e-12, high=0.1
     )

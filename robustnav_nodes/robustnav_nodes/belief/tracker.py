@@ -5,8 +5,9 @@ import numpy as np
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Float64, Pose2D
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_nodes.belief.evidence import evidence_of
 from robustnav_nodes.belief.location_belief import LocationBelief
-from robustnav_nodes.belief.observation import detected_factor, missed_factor, usable_f1
+from robustnav_nodes.belief.observation import place_densities
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.view_gate import Verdict, ViewGate
 from robustnav_nodes.search_space.camera_view import CameraView
@@ -24,7 +25,7 @@ class BeliefTracker:
     ) -> None:
         self._view = view
         self._parameters = parameters
-        self._f1 = usable_f1(statistics.f1, parameters.f1_min, parameters.f1_max)
+        self._evidence = evidence_of(statistics, view.share_in_view(), parameters)
         self._gate = ViewGate(parameters)
         self.belief = LocationBelief.uniform(view.candidates)
 
@@ -48,6 +49,8 @@ class BeliefTracker:
         BadMessageError where a place is not finite.
         """
         places = np.asarray(detected_m, dtype=np.float64)
+        if places.size == 0:
+            places = places.reshape(0, 2)
         if places.ndim != 2 or (len(places) > 0 and places.shape[1] not in (2, 3)):
             raise BadMessageError(f"detected places must be [m, 2] or [m, 3], not {places.shape}")
         if not np.isfinite(places).all():
@@ -57,11 +60,9 @@ class BeliefTracker:
             return verdict
         limits = self._parameters
         in_view = self._view.visible(robot)
-        if len(places) == 0:
-            factor = missed_factor(in_view, self._f1)
-        else:
-            factor = detected_factor(
-                self._view.candidates, in_view, places, limits.detection_sigma_m, limits.detection_floor
-            )
+        candidates = self._view.candidates
+        densities = place_densities(candidates, in_view, places[:, :2], limits.detection_sigma_m)
+        distance_m = np.hypot(candidates.x_m - robot.x_m, candidates.y_m - robot.y_m)
+        factor = self._evidence.factor(in_view, densities, distance_m)
         self.belief = self.belief.updated(factor, limits.probability_floor)
         return verdict

@@ -1,4 +1,4 @@
-"""Furnished floors drawn by seed: rooms, doors, furniture that holds objects and furniture that hides them."""
+"""Furnished floors drawn by seed: rooms, doors, furniture that holds objects, furniture that hides."""
 
 import math
 from dataclasses import dataclass
@@ -51,11 +51,14 @@ def draw_floor(style: FloorStyle, rng: np.random.Generator) -> tuple[OccupancyMa
     aspect = rng.uniform(1.0, 1.5)
     width = _even(math.sqrt(area_m2 * aspect) / CELL_M)
     height = _even(math.sqrt(area_m2 / aspect) / CELL_M)
-    walls = np.ones((height + 2 * _WALL, width + 2 * _WALL), dtype=np.bool_)
-    whole = _Room(row=_WALL, column=_WALL, height=height, width=width)
-    walls[whole.slices] = False
-    doorways = np.zeros_like(walls)
-    rooms = _divide(whole, rooms_wanted, walls, doorways, rng)
+    while True:
+        walls = np.ones((height + 2 * _WALL, width + 2 * _WALL), dtype=np.bool_)
+        whole = _Room(row=_WALL, column=_WALL, height=height, width=width)
+        walls[whole.slices] = False
+        doorways = np.zeros_like(walls)
+        rooms = _divide(whole, rooms_wanted, walls, doorways, rng)
+        if _is_connected(walls):  # not where a later wall met an earlier door
+            break
     low, tall = np.zeros_like(walls), np.zeros_like(walls)
     _furnish(rooms, walls, doorways, low, tall, style, rng)
 
@@ -113,8 +116,8 @@ def _furnish(
     weight = np.array([room.height * room.width for room in rooms], dtype=np.float64)
     weight /= weight.sum()
     for _ in range(_TRIES):
-        short_of_tall = np.count_nonzero(tall) < style.tall * floor
-        short_of_low = np.count_nonzero(low) < style.filled * floor
+        short_of_tall = bool(np.count_nonzero(tall) < style.tall * floor)
+        short_of_low = bool(np.count_nonzero(low) < style.filled * floor)
         if not short_of_tall and not short_of_low:
             return
         room = rooms[int(rng.choice(len(rooms), p=weight))]
@@ -130,8 +133,8 @@ def _furnish(
 
 def _piece(room: _Room, rng: np.random.Generator, *, is_tall: bool) -> tuple[slice, slice]:
     """A rectangle in the room; two of three stand at a wall, tall ones always."""
-    height = min(_SIDE * int(rng.integers(2, 7)), room.height)
-    width = min(_SIDE * int(rng.integers(2, 7)), room.width)
+    height = min(_SIDE * int(rng.integers(1, 7)), room.height)
+    width = min(_SIDE * int(rng.integers(1, 7)), room.width)
     row = int(rng.integers(0, room.height - height + 1))
     column = int(rng.integers(0, room.width - width + 1))
     if is_tall or rng.random() < 2 / 3:

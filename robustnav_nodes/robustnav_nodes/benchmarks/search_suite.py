@@ -35,19 +35,19 @@ class Difficulty:
 
 DIFFICULTIES = {
     "easy": Difficulty(
-        style=FloorStyle(rooms=(1, 1), area_m2=(9.0, 13.0), filled=0.52, tall=0.04),
+        style=FloorStyle(rooms=(1, 1), area_m2=(9.0, 13.0), filled=0.40, tall=0.14),
         poses=(96, 168),
         candidates=(130, 210),
     ),
     "medium": Difficulty(
-        style=FloorStyle(rooms=(2, 2), area_m2=(36.0, 46.0), filled=0.54, tall=0.05),
+        style=FloorStyle(rooms=(3, 4), area_m2=(40.0, 50.0), filled=0.44, tall=0.14),
         poses=(500, 700),
         candidates=(500, 700),
     ),
     "hard": Difficulty(
-        style=FloorStyle(rooms=(4, 6), area_m2=(94.0, 110.0), filled=0.54, tall=0.06),
+        style=FloorStyle(rooms=(5, 7), area_m2=(102.0, 116.0), filled=0.58, tall=0.10),
         poses=(1500, 2000),
-        candidates=(1200, 1600),
+        candidates=(1150, 1600),
     ),
 }
 SPACE = SearchSpaceParameters(camera_forward_m=0.0, range_min_m=0.0, candidate_size_m=0.2)
@@ -117,7 +117,8 @@ def _target(space: SearchSpace, place: int, number: int, rng: np.random.Generato
 def _destinations(space: SearchSpace, place: int, in_view: Bool) -> Bool:
     x_m, y_m = space.candidates.x_m[place], space.candidates.y_m[place]
     distance_m = np.hypot(space.graph.x_m - x_m, space.graph.y_m - y_m)
-    return in_view & (distance_m <= distance_m[in_view].min() + _DESTINATION_M)
+    near = distance_m <= distance_m[in_view].min() + _DESTINATION_M
+    return np.asarray(in_view & near, dtype=np.bool_)
 
 
 def _perfect(space: SearchSpace, place: int, in_view: Bool) -> DetectionRecord:

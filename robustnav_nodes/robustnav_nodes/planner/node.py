@@ -18,6 +18,7 @@ from robustnav_nodes.graph.spin import run_nodes
 from robustnav_nodes.planner.drive import allowed_time_s, has_arrived, stands
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.search_session import NextStep, SearchSession
+from robustnav_nodes.search_space.cache import cached_search_space, user_cache_folder
 from robustnav_nodes.search_space.floor_inputs import FloorInputs
 from robustnav_nodes.search_space.space import SearchSpace
 
@@ -93,7 +94,8 @@ class Planner(GraphNode[PlannerParameters]):
         here = self._poses.latest
         inputs = None if self._builder.busy or here is None else self._floor.take(time.monotonic())
         if inputs is not None and here is not None:
-            build = partial(SearchSpace.build, *inputs, self.parameters, here.pose)
+            folder = user_cache_folder() if self.parameters.search_space_cache else None
+            build = partial(cached_search_space, *inputs, self.parameters, here.pose, folder)
             self._builder.submit(build, self._on_space)
 
     def _on_space(self, space: SearchSpace) -> None:

@@ -4,43 +4,71 @@ import math
 from dataclasses import dataclass
 
 from robustnav_msgs_py.parameters import parameter
+from robustnav_nodes.planner.pomcp_parameters import PomcpParameters
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
 
-# BE: particles from the candidates not yet ruled out. PD: the belief ends the search, not one detection.
-VARIANTS = ("pomp", "pomp_be", "pomp_pd", "pomp_be_pd")
+# The baselines, the thesis' four, and ours. BE: particles from the candidates not yet ruled out. PD: the
+# belief ends the search, not one detection. belief: particles follow R. guided: rollouts go where R is.
+VARIANTS = (
+    "random",
+    "greedy",
+    "greedy_gain",
+    "pomp",
+    "pomp_be",
+    "pomp_pd",
+    "pomp_be_pd",
+    "pomp_belief",
+    "lookahead",
+)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlannerParameters(SearchSpaceParameters):
-    """The planner's variant, POMCP, when a search ends, and docking."""
+@dataclass(frozen=True, kw_only=True)
+class PlannerParameters(SearchSpaceParameters, PomcpParameters):
+    """The planner's variant, its search, when a search ends, and docking."""
 
-    variant: str = parameter("pomp_be_pd", "planner of the thesis or one of its parts", choices=VARIANTS)
+    variant: str = parameter("lookahead", "baseline, planner of the thesis, or ours", choices=VARIANTS)
 
-    simulations: int = parameter(1024, "simulations for one decision", low=8, high=1_000_000)
-    time_budget_s: float = parameter(
-        2.0, "a decision is taken after this time with the simulations so far", unit="s", low=0.01, high=60.0
-    )
-    batch_simulations: int = parameter(128, "simulations between two looks at the clock", low=8, high=100_000)
-    exploration: float = parameter(1000.0, "UCT constant, in units of reward", low=0.0, high=1e6)
-    discount: float = parameter(0.97, "worth of a reward one step later", low=0.01, high=0.999999)
-    max_depth: int = parameter(300, "steps of one simulation, tree and rollout together", low=1, high=10_000)
     reward_seen: float = parameter(1000.0, "reward for seeing the target", low=0.0, high=1e6)
     cost_step: float = parameter(1.0, "cost of a step that does not show the target", low=0.0, high=1e6)
     cost_revisit: float = parameter(10.0, "its cost where the pose was visited before", low=0.0, high=1e6)
 
+    recall: float = parameter(
+        0.6, "lookahead: how likely a target in view is detected, as far as planning goes", low=0.01, high=1.0
+    )
+    goals: int = parameter(20, "lookahead: viewpoints tried for one decision", low=1, high=10_000)
+    lookahead_steps: int = parameter(60, "lookahead: steps thought ahead", low=1, high=10_000)
+    worth: str = parameter(
+        "ratio",
+        "lookahead: a find is worth the shortest way over the way taken, or discount ^ steps",
+        choices=("ratio", "discount"),
+    )
+
+    ending: str = parameter(
+        "variant",
+        "what ends a search: a detection, a likely location in view, or that the target is likely in view; "
+        "variant: as the variant is defined",
+        choices=("variant", "detection", "location", "view"),
+    )
+    p_found: float = parameter(
+        0.92, "view: the search ends where the target is in view with this probability", low=0.01, high=0.9999
+    )
+    views_to_commit: int = parameter(
+        1, "location: views in which its probability must have risen", low=1, high=100
+    )
     confidence: float = parameter(
         10.0,
-        "the search ends where a location in view is this many times as likely as 1/k",
+        "location: the search ends where one in view is this many times as likely as 1/k",
         low=1.1,
         high=1e4,
     )
-    tau_max: float = parameter(0.5, "and at this probability at the latest", low=0.01, high=0.999)
+    tau_max: float = parameter(0.5, "location: and at this probability at the latest", low=0.01, high=0.999)
     max_steps: int = parameter(200, "steps after which the target counts as not found", low=1, high=100_000)
 
     reinvigoration_radius_m: float = parameter(
         0.5, "how far a new particle may lie from an old one (pomp, pomp_pd)", unit="m", low=0.0, high=10.0
     )
 
+    dock: bool = parameter(True, "go up to the target at the end")
     docking_distance_m: float = parameter(
         1.2, "preferred distance from the target at the end", unit="m", low=0.1, high=5.0
     )
@@ -48,6 +76,9 @@ class PlannerParameters(SearchSpaceParameters):
         True, "look once more at the end, and search on if the target is not likely to be there"
     )
 
+    search_space_cache: bool = parameter(
+        True, "keep what sees what of large maps on disk, in the user's cache folder"
+    )
     seed: int = parameter(1, "decides the simulations", low=0, high=2**31 - 1)
     arrival_distance_m: float = parameter(
         0.06, "a goal is reached within this distance", unit="m", low=0.005, high=1.0

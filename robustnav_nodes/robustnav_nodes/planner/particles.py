@@ -1,4 +1,4 @@
-"""Where the planner imagines the target: the particles of each decision, in the thesis' two ways."""
+"""Where POMCP imagines the target: the particles of each decision, in the thesis' two ways and in ours."""
 
 from typing import Protocol
 
@@ -56,6 +56,31 @@ class CandidatesNotRuledOut:
         members = np.nonzero(self.not_ruled_out)[0]
         if self.tours == 1:
             return members[rng.integers(len(members), size=count)]
+        weight = self._probability[members]
+        return rng.choice(members, size=count, p=weight / weight.sum())
+
+    def decided(self, plan: Plan, particles: Particles) -> None:
+        """See ParticleSource; this source does not depend on the plan."""
+
+
+class BelievedCandidates:
+    """Beyond the thesis: particles follow the belief R itself, over all candidates that can be seen.
+
+    pp forgets in one look what R only doubts: a candidate that the detector missed is gone from pp for the
+    rest of the tour. R keeps it in proportion to the chance of a miss.
+    """
+
+    def __init__(self, can_be_seen: Bool) -> None:
+        self._can_be_seen = can_be_seen
+        self._probability: Float64 = np.full(len(can_be_seen), 1.0 / len(can_be_seen))
+
+    def looked(self, in_view: Bool, rose: Bool, probability: Float64) -> None:
+        """See ParticleSource."""
+        self._probability = probability
+
+    def draw(self, count: int, rng: np.random.Generator) -> Particles:
+        """See ParticleSource."""
+        members = np.nonzero(self._can_be_seen)[0]
         weight = self._probability[members]
         return rng.choice(members, size=count, p=weight / weight.sum())
 

@@ -17,6 +17,8 @@ from robustnav_nodes.search_space.floor_grid import FREE, FloorGrid, floor_grid
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
 from robustnav_nodes.search_space.sight import Scene, look
 
+_LOOKS_FOR_SHARE = 256
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CameraView:
@@ -38,6 +40,25 @@ class CameraView:
         seen = np.zeros(len(self.candidates), dtype=np.bool_)
         seen[found[:count]] = True
         return seen
+
+    def share_in_view(self) -> float:
+        """Part of the candidates that is in view on average, from free floor with any heading, in 0..1."""
+        rng = np.random.default_rng(0)
+        rows, columns = np.nonzero(self.grid.kind == FREE)
+        chosen = rng.integers(len(rows), size=_LOOKS_FOR_SHARE)
+        yaw_rad = rng.uniform(0.0, 2.0 * np.pi, size=_LOOKS_FOR_SHARE)
+        found = np.empty(len(self.candidates), dtype=np.int32)
+        counts = [
+            look(
+                self.scene,
+                self.grid.x_m + (column + 0.5) * self.grid.resolution_m,
+                self.grid.y_m + (row + 0.5) * self.grid.resolution_m,
+                yaw,
+                found,
+            )
+            for row, column, yaw in zip(rows[chosen], columns[chosen], yaw_rad, strict=True)
+        ]
+        return float(np.mean(counts)) / len(self.candidates)
 
 
 def build_camera_view(

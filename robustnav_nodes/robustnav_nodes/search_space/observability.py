@@ -90,6 +90,10 @@ class Observability:
         column[self.seers_of(candidate)] = True
         return column
 
+    def share_in_view(self) -> float:
+        """Part of the candidates that a pose has in view on average, in 0..1."""
+        return len(self.seen) / (self.poses * self.candidates)
+
     def seen_from_somewhere(self) -> Bool:
         """bool [k]: the candidates that at least one pose has in view."""
         return np.asarray(np.diff(self.seers_start) > 0, dtype=np.bool_)
