@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from robustnav_msgs_py.values import BeliefCloud
 from robustnav_nodes.belief.location_belief import LocationBelief
-from robustnav_nodes.belief.observation import detected_factor, missed_factor
+from robustnav_nodes.belief.observation import detected_factor, missed_factor, place_densities
 from robustnav_nodes.search_space.candidates import Candidates
 
 FLOOR = 1e-6
@@ -35,7 +35,8 @@ def test_c4_a_belief_never_collapses(in_a_row, observations, repeat):
         if detected is None:
             factor = missed_factor(bits(view), 0.99)
         else:
-            factor = detected_factor(candidates, bits(view), np.array([detected]), 0.05, 1e-6)
+            densities = place_densities(candidates, bits(view), np.array([detected]), 0.05)
+            factor = detected_factor(bits(view), densities, 1e-6)
         belief = belief.updated(factor, FLOOR)
         assert is_sound(belief.probability)
         assert 0.0 <= belief.normalised_entropy() <= 1.0
@@ -68,8 +69,9 @@ def test_bayes_rule_by_hand(in_a_row):
     belief = LocationBelief.uniform(in_a_row(3))
     belief = belief.updated(missed_factor(np.array([True, False, False]), 0.75), FLOOR)
     np.testing.assert_allclose(belief.probability, [1 / 7, 3 / 7, 3 / 7])
-    second = np.array([[0.2, 0.0]])
-    factor = detected_factor(in_a_row(3), np.array([False, True, False]), second, sigma_m=0.5, floor=0.1)
+    view = np.array([False, True, False])
+    densities = place_densities(in_a_row(3), view, np.array([[0.2, 0.0]]), sigma_m=0.5)
+    factor = detected_factor(view, densities, floor=0.1)
     np.testing.assert_allclose(belief.updated(factor, FLOOR).probability, [1 / 34, 30 / 34, 3 / 34])
 
 

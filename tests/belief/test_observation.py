@@ -4,7 +4,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from robustnav_nodes.belief.observation import detected_factor, missed_factor, usable_f1
+from robustnav_nodes.belief.observation import detected_factor, missed_factor, place_densities, usable_f1
+
+
+def factor_at(candidates, in_view, detected_m, sigma_m, floor):
+    """The factor of detections at places, as the tracker makes it."""
+    return detected_factor(in_view, place_densities(candidates, in_view, detected_m, sigma_m), floor)
 
 
 @given(
@@ -19,7 +24,7 @@ def test_factors_are_positive_and_sum_to_one(in_a_row, in_view, f1, x_m, sigma_m
     detected = np.array([[x_m, 0.0]])
     for factor in (
         missed_factor(in_view, f1),
-        detected_factor(candidates, in_view, detected, sigma_m, floor),
+        factor_at(candidates, in_view, detected, sigma_m, floor),
     ):
         assert factor.shape == in_view.shape
         assert np.all(factor > 0.0)
@@ -29,13 +34,13 @@ def test_factors_are_positive_and_sum_to_one(in_a_row, in_view, f1, x_m, sigma_m
 def test_c2_a_detection_leaves_places_outside_the_view_possible(in_a_row):
     """By hand: sigma 0.2 m, candidates 0, 1 and 2 sigma from the detection, the last out of view."""
     in_view = np.array([True, True, False])
-    factor = detected_factor(in_a_row(3), in_view, np.array([[0.0, 0.0]]), sigma_m=0.2, floor=0.1)
+    factor = factor_at(in_a_row(3), in_view, np.array([[0.0, 0.0]]), sigma_m=0.2, floor=0.1)
     np.testing.assert_allclose(factor / factor[0], [1.0, np.exp(-0.5), 0.1])
     assert factor[2] > 0.0
 
 
 def test_c2_the_floor_also_holds_inside_the_view(in_a_row):
-    factor = detected_factor(in_a_row(50), np.ones(50, dtype=bool), np.array([[0.0, 0.0]]), 0.2, 0.1)
+    factor = factor_at(in_a_row(50), np.ones(50, dtype=bool), np.array([[0.0, 0.0]]), 0.2, 0.1)
     np.testing.assert_allclose(factor[-1] / factor[0], 0.1)
 
 
@@ -55,7 +60,7 @@ def test_c4_no_f1_rules_a_place_out_or_makes_silence_a_find():
 
 def test_each_of_several_detections_counts_in_full(in_a_row):
     detected = np.array([[0.0, 0.0], [1.8, 0.0]])
-    factor = detected_factor(in_a_row(10), np.ones(10, dtype=bool), detected, sigma_m=0.3, floor=0.01)
+    factor = factor_at(in_a_row(10), np.ones(10, dtype=bool), detected, sigma_m=0.3, floor=0.01)
     assert factor[0] == pytest.approx(factor[9])
     np.testing.assert_allclose(factor, factor[::-1])
     assert factor[0] > 3.0 * factor[4]
@@ -63,5 +68,18 @@ def test_each_of_several_detections_counts_in_full(in_a_row):
 
 def test_the_view_edge_cuts_a_detection(in_a_row):
     in_view = np.array([True, False])
-    factor = detected_factor(in_a_row(2), in_view, np.array([[0.2, 0.0]]), sigma_m=0.2, floor=0.1)
+    factor = factor_at(in_a_row(2), in_view, np.array([[0.2, 0.0]]), sigma_m=0.2, floor=0.1)
     assert factor[1] < factor[0]
+
+
+def test_densities_by_hand(in_a_row):
+    """Two detections: at the first candidate, and 0.2 m = 1 sigma beside the second; the third is hidden."""
+    in_view = np.array([True, True, False])
+    detected = np.array([[0.0, 0.0], [0.2, -0.2]])
+    densities = place_densities(in_a_row(3), in_view, detected, sigma_m=0.2)
+    by_hand = [[1.0, np.exp(-0.5), 0.0], [np.exp(-1.0), np.exp(-0.5), 0.0]]
+    np.testing.assert_allclose(densities, by_hand)
+
+
+def test_a_silent_detector_has_no_densities(in_a_row):
+    assert place_densities(in_a_row(3), np.ones(3, dtype=bool), np.zeros((0, 2)), 0.2).shape == (0, 3)

@@ -8,8 +8,10 @@ from scipy.io import savemat
 from typer.testing import CliRunner, Result
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
+from robustnav_msgs_py.values import OccupancyMap, Pose2D
 from robustnav_nodes.benchmarks.data_commands import data_app
 from robustnav_nodes.benchmarks.scene_file import read_scene
+from robustnav_nodes.search_space.nav2_map import write_nav2_map
 
 POMP = {
     "ListView.txt": "a.jpg\nb.jpg\n",
@@ -101,3 +103,19 @@ def test_what_fails_is_a_sentence_and_writes_nothing(robustnav_data, pomp, tmp_p
 @pytest.mark.parametrize("arguments", [("import", "pomp", "x"), ("import", "avd"), ("export", "pomp", "x")])
 def test_wrong_usage_exits_with_2(robustnav_data, arguments):
     assert robustnav_data(*arguments).exit_code == 2
+
+
+def test_a_nav2_map_becomes_a_scene_to_search_in(tmp_path):
+    """A room with a table in it, saved as Nav2 saves maps; what borders the floor can hold the targets."""
+    cells = np.full((60, 80), 100, dtype=np.int8)
+    cells[2:-2, 2:-2] = 0
+    cells[25:35, 30:50] = 100
+    floor_map = OccupancyMap(cells=cells, resolution_m=0.05, origin=Pose2D(x_m=-1.0, y_m=-1.0))
+    write_nav2_map(floor_map, tmp_path / "office.yaml")
+    done = CliRunner().invoke(
+        data_app, ["import", "nav2-map", str(tmp_path / "office.yaml"), "--out", str(tmp_path / "office.npz")]
+    )
+    assert done.exit_code == 0, done.output
+    scene = read_scene(tmp_path / "office.npz")
+    assert (scene.name, scene.difficulty, len(scene.targets)) == ("office", "nav2-map", 33)
+    assert len(scene.space.graph) > 100

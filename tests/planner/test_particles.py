@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robustnav_nodes.planner.particles import CandidatesNotRuledOut, ParticleFilter
+from robustnav_nodes.planner.particles import BelievedCandidates, CandidatesNotRuledOut, ParticleFilter
 from robustnav_nodes.planner.pomcp import Plan
 from robustnav_nodes.search_space.candidates import Candidates
 
@@ -75,6 +75,21 @@ def test_what_no_pose_sees_is_never_looked_for():
     assert set(source.draw(100, np.random.default_rng(0)).tolist()) == {2, 3}
 
 
+def test_believed_candidates_follow_the_belief_also_where_the_detector_was_silent():
+    """What no pose sees is left out; what was looked at without success is not."""
+    source = BelievedCandidates(~only(7))
+    believed = np.array([0.4, 0.1, 0.1, 0.1, 0.1, 0.05, 0.05, 0.1])
+    source.looked(only(0, 1, 2), NOBODY, believed)
+    share = np.bincount(source.draw(90_000, np.random.default_rng(0)), minlength=K) / 90_000
+    np.testing.assert_allclose(share[:7], believed[:7] / 0.9, atol=0.01)
+    assert share[7] == 0.0
+
+
+def test_believed_candidates_begin_alike():
+    share = np.bincount(BelievedCandidates(~NOBODY).draw(80_000, np.random.default_rng(0)), minlength=K)
+    np.testing.assert_allclose(share, 10_000, rtol=0.05)
+
+
 def a_plan(first_action: list[int], first_observation: list[int]) -> Plan:
     count = len(first_action)
     return Plan(
@@ -86,6 +101,7 @@ def a_plan(first_action: list[int], first_observation: list[int]) -> Plan:
         first_observation=np.array(first_observation, dtype=np.int32),
         simulations=count,
         elapsed_ms=0.0,
+        steps=0,
     )
 
 

@@ -7,6 +7,8 @@ import pytest
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.records import SearchPhase
 from robustnav_msgs_py.values import BeliefCloud, Pose2D
+from robustnav_nodes.planner.ending import ending_of
+from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.search_session import SearchSession
 
 CORRIDOR = ("##############", "#............#", "#o..........o#", "#............#", "##############")
@@ -21,11 +23,11 @@ def space(space_of):
 
 @pytest.fixture
 def session_with(space, parameters_with):
-    def make(seed: int = 0, **changes: object) -> SearchSession:
+    def make(seed: int = 0, variant: str = "pomp_be_pd", **changes: object) -> SearchSession:
         return SearchSession(
             target="mug",
             space=space,
-            parameters=parameters_with(simulations=256, **changes),
+            parameters=parameters_with(variant=variant, simulations=256, **changes),
             rng=np.random.default_rng(seed),
             clock=lambda: 0.0,
             episode=3,
@@ -81,6 +83,29 @@ def test_first_step_is_a_decision_with_every_action(session_with, cloud_of, spac
     assert (decision.tau, decision.entropy) == (0.75, 1.0)
 
 
+def test_the_lookaheads_decision_says_how_many_viewpoints_were_thought_through(session_with, cloud_of, space):
+    """Each first action with the best plan that begins with it; one that none begins with has no value."""
+    decision = session_with(variant="lookahead").observe(START, cloud_of(0.3, 0.7)).decision
+    assert decision.planner == "lookahead"
+    assert sum(decision.visits) == decision.simulations > 1
+    assert decision.values[decision.actions.index(decision.action)] == np.nanmax(decision.values)
+    tried = [visits > 0 for visits in decision.visits]
+    assert [math.isfinite(value) for value in decision.values] == tried
+    assert (decision.tau, decision.p_in_view) == (ending_of_ours(space).threshold, 0.0)
+    assert "towards a view of" in decision.reason
+
+
+def ending_of_ours(space):
+    return ending_of(PlannerParameters(), len(space.candidates))
+
+
+def test_ours_docks_where_the_target_is_in_view_and_was_detected(session_with, cloud_of, space):
+    session = session_with(variant="lookahead")
+    step = session.observe(looking_at(space, 1, 1.8), cloud_of(0.02, 0.98))
+    assert step.state.phase is SearchPhase.DOCKING
+    assert "in view; " in step.state.message
+
+
 def test_same_seed_same_search(session_with, cloud_of, space):
     def walk(seed: int) -> list[Pose2D]:
         session, robot, goals = session_with(seed), START, []
@@ -106,7 +131,7 @@ def test_c13_the_start_pose_is_observed_too(session_with, cloud_of, space):
 def test_c13_the_start_view_rules_candidates_out(session_with, cloud_of, space):
     session = session_with()
     session.observe(looking_at(space, 1, 1.8), cloud_of(0.7, 0.3))
-    assert session._particles.not_ruled_out.tolist() == [True, False]
+    assert session._search._policy._particles.not_ruled_out.tolist() == [True, False]
 
 
 def test_a_likely_location_out_of_view_does_not_end_the_search(session_with, cloud_of, space):
@@ -179,7 +204,7 @@ def test_a_view_that_told_nothing_new_rules_nothing_out(session_with, cloud_of, 
     session = session_with(tau_max=0.9)
     session.observe(looking_at(space, 1, 1.8), cloud_of(0.4, 0.6))
     session.observe(looking_at(space, 1, 1.5), cloud_of(0.4, 0.6))
-    assert session._particles.not_ruled_out.tolist() == [True, True]
+    assert session._search._policy._particles.not_ruled_out.tolist() == [True, True]
 
 
 def test_the_search_gives_up_after_its_steps(session_with, cloud_of):

@@ -15,6 +15,8 @@ export_app = typer.Typer(help="Take data out to other formats.", no_args_is_help
 data_app.add_typer(import_app, name="import")
 data_app.add_typer(export_app, name="export")
 
+_NAMED = 4  # targets named in a summary
+
 SceneFile = Annotated[Path, typer.Option("--out", help="scene file to write (.npz); must not exist")]
 
 
@@ -40,6 +42,31 @@ def import_avd_command(
     _write(import_avd(folder), out)
 
 
+@import_app.command("nav2-map")
+def import_nav2_map_command(
+    map_file: Annotated[Path, typer.Argument(metavar="MAP.yaml", help="a map as Nav2's map saver writes it")],
+    out: SceneFile,
+    candidates: Annotated[
+        Path | None,
+        typer.Option(help="mask (.yaml) of what can hold objects; default: what borders the floor"),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="decides what hides where, and the detector's errors")] = 1,
+) -> None:
+    """Import the map of a real place, and hide things in it: how would a search do there?"""
+    import numpy as np
+
+    from robustnav_nodes.benchmarks.search_suite import SPACE, hide_targets
+    from robustnav_nodes.search_space.nav2_map import read_nav2_map
+    from robustnav_nodes.search_space.space import SearchSpace
+
+    floor_map = read_nav2_map(map_file)
+    mask = read_nav2_map(candidates) if candidates is not None else None
+    everywhere = SearchSpace.build(floor_map, mask, SPACE)
+    inside = everywhere.graph.pose(everywhere.graph.largest_part())
+    space = SearchSpace.build(floor_map, mask, SPACE, inside)
+    _write(hide_targets(space, map_file.stem, "nav2-map", np.random.default_rng(seed)), out)
+
+
 @export_app.command("pomp")
 def export_pomp_command(
     scene: Annotated[Path, typer.Argument(help="scene file (.npz)")],
@@ -59,7 +86,8 @@ def export_pomp_command(
 def summary(scene: SearchScene) -> str:
     """What a scene holds, in one line: "scene Home_001_1, 1192 poses, 840 candidates, 1 target (jar)"."""
     poses, candidates = len(scene.space.graph), len(scene.space.candidates)
-    labels = ", ".join(target.label for target in scene.targets)
+    labels = ", ".join(target.label for target in scene.targets[:_NAMED])
+    labels += ", ..." if len(scene.targets) > _NAMED else ""
     return (
         f"scene {scene.name}, {_count(poses, 'pose')}, {_count(candidates, 'candidate')}, "
         f"{_count(len(scene.targets), 'target')} ({labels})"

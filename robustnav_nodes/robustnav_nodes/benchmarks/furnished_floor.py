@@ -9,7 +9,7 @@ from scipy import ndimage
 from robustnav_msgs_py.values import Bool, OccupancyMap, Pose2D
 
 CELL_M = 0.1
-_WALL = 2  # cells, as thick as a candidate location is wide, so that both keep to one grid
+_WALL = 2  # cells, as thick as a candidate location is wide
 _DOOR = 9  # cells
 _SIDE = 2  # cells of a candidate location; furniture is drawn in these
 _ROBOT_REACH = 3  # cells around a place to stand; with less, the lattice of poses may miss the way

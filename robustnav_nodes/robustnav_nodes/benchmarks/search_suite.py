@@ -57,12 +57,16 @@ def make_scene(difficulty: str, seed: int) -> SearchScene:
     """The scene number `seed` of "easy", "medium" or "hard", always the same."""
     kind = DIFFICULTIES[difficulty]
     rng = np.random.default_rng([seed, list(DIFFICULTIES).index(difficulty)])
-    space = _space_of(kind, rng)
+    return hide_targets(_space_of(kind, rng), f"{difficulty}-{seed}", difficulty, rng)
+
+
+def hide_targets(space: SearchSpace, name: str, difficulty: str, rng: np.random.Generator) -> SearchScene:
+    """A scene on `space`: each of 33 classes hidden somewhere, and two detectors that look for them."""
     seen = np.nonzero(space.observability.seen_from_somewhere())[0]
     places = rng.choice(seen, size=CLASSES)
     targets = tuple(_target(space, int(place), number, rng) for number, place in enumerate(places))
     return SearchScene(
-        name=f"{difficulty}-{seed}",
+        name=name,
         difficulty=difficulty,
         space=space,
         targets=targets,

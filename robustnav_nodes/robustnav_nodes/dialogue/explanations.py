@@ -21,12 +21,16 @@ def explain(state: SearchState, decision: Decision | None) -> str:
     )
     if decision.action == "dock":
         return f"I drive to where I believe the {state.target} is: {decision.reason}. {most_likely}."
-    ranked = sorted(zip(decision.values, decision.actions, strict=True), reverse=True)
-    others = ", ".join(f"{action} {value:.0f}" for value, action in ranked if action != decision.action)
-    best = next((value for value, action in ranked if action == decision.action), math.nan)
+    chosen = f"In step {decision.step} I chose to {_as_verb(decision.action)}"
+    worth = dict(zip(decision.actions, decision.values, strict=True))
+    tried = {action: value for action, value in worth.items() if not math.isnan(value)}
+    best = tried.pop(decision.action, None)
+    if best is None:
+        return f"{chosen}. {most_likely}."
+    ranked = sorted(tried.items(), key=lambda option: option[1], reverse=True)
+    others = ", ".join(f"{action} {value:.3g}" for action, value in ranked)
     return (
-        f"In step {decision.step} I chose to {_as_verb(decision.action)}: over {decision.simulations} "
-        f"imagined searches that was worth {best:.0f}"
+        f"{chosen}: over {decision.simulations} imagined searches that was worth {best:.3g}"
         + (f" (the others: {others}). " if others else ". ")
         + f"{most_likely}."
     )

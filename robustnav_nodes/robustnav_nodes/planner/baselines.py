@@ -33,7 +33,7 @@ class RandomWalk:
 class Greedy:
     """Towards the pose with the most unseen candidates in view per step of the way there; a Policy.
 
-    Decided anew at each step. Where everything has been seen, everything counts as unseen again.
+    Decided anew at each step. Where nothing unseen is left to go to, everything counts as unseen again.
     """
 
     def __init__(self, space: SearchSpace) -> None:
@@ -50,10 +50,15 @@ class Greedy:
 
     def decide(self, situation: Situation, rng: np.random.Generator) -> Choice | None:
         """See Policy."""
-        never_looked = np.zeros(len(situation.graph), dtype=np.bool_)
-        return _towards_best(
-            situation, self._observability, self._reach, self._unseen.astype(np.float64), never_looked
-        )
+        choice = self._towards_unseen(situation)
+        if choice is None:  # what is left is seen from here alone, or from nowhere that it can reach
+            self._unseen = self._can_be_seen.copy()
+            choice = self._towards_unseen(situation)
+        return choice
+
+    def _towards_unseen(self, situation: Situation) -> Choice | None:
+        mass, never_looked = self._unseen.astype(np.float64), np.zeros(len(situation.graph), dtype=np.bool_)
+        return _towards_best(situation, self._observability, self._reach, mass, never_looked)
 
 
 class GreedyGain:

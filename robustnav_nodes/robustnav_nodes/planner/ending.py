@@ -4,6 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
+from robustnav_msgs_py.values import Bool
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.policy import Sight
 
@@ -82,21 +83,27 @@ class LikelyLocation:
 
 
 class LikelyView:
-    """The target is in view with probability `p_found`, wherever in it.
+    """The target is in view with probability `p_found`, wherever in it, and something in view was detected.
 
     Detections are placed within half a metre or so, which spreads even a sure find over dozens of locations:
     their sum is a probability that a threshold can be set against, whatever the number of candidates.
+
+    R takes it for certain that the target is at a candidate, so what is left when all else was looked at, or
+    a view that holds them all, is as likely as a find. Nothing that never rose in view is found; only R over
+    a single candidate, which cannot rise, needs nothing more than the view.
     """
 
-    def __init__(self, p_found: float) -> None:
+    def __init__(self, candidates: int, p_found: float) -> None:
         self.threshold = p_found
+        self._risen: Bool = np.full(candidates, candidates == 1)
 
     def looked(self, sight: Sight) -> None:
         """See Ending."""
+        self._risen |= sight.rose
 
     def found(self, sight: Sight) -> int | None:
         """See Ending."""
-        if self.p_in_view(sight) < self.threshold:
+        if self.p_in_view(sight) < self.threshold or not (sight.in_view & self._risen).any():
             return None
         return int(np.argmax(np.where(sight.in_view, sight.probability, -1.0)))
 
@@ -130,4 +137,4 @@ def ending_of(parameters: PlannerParameters, candidates: int) -> Ending:
     if kind == "location":
         tau = exit_threshold(candidates, parameters.confidence, parameters.tau_max)
         return LikelyLocation(candidates, tau, parameters.views_to_commit)
-    return LikelyView(parameters.p_found)
+    return LikelyView(candidates, parameters.p_found)

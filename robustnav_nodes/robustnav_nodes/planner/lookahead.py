@@ -86,13 +86,14 @@ class Lookahead:
             if self._clock() - began >= parameters.time_budget_s:
                 break
         self._goal = best_goal
+        in_view = situation.sight.probability[self._observability.seen_by(best_goal)].sum()
         return Choice(
             action=best_action,
             values=values,
             visits=visits,
             simulations=tried,
             elapsed_ms=1000.0 * (self._clock() - began),
-            reason=f"towards a view of {outlook.gain[best_goal] / mass.sum():.1%} of what is unseen",
+            reason=f"towards a view of {in_view:.1%} of the belief",
         )
 
     def _weigh(self, place: Place, reached: int) -> Float64:

@@ -99,10 +99,12 @@ class Planner(GraphNode[PlannerParameters]):
             self._builder.submit(build, self._on_space)
 
     def _on_space(self, space: SearchSpace) -> None:
-        self._space = space
+        before, self._space = self._space, space
         self.health.figure("poses", len(space.graph))
         self.health.figure("candidate locations", len(space.candidates))
-        if self._is_wanted:
+        if self._session is not None and before is not None and before.frame_id == space.frame_id:
+            self._session.move_to(space)
+        elif self._is_wanted:
             self._start()
 
     # The search.

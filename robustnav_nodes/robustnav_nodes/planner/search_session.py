@@ -8,10 +8,11 @@ import numpy as np
 from robustnav_msgs_py.records import Decision, SearchPhase, SearchState
 from robustnav_msgs_py.values import BeliefCloud, Pose2D
 from robustnav_nodes.planner.cloud_check import check_cloud
+from robustnav_nodes.planner.course import Step
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.policy import legal_actions
 from robustnav_nodes.planner.pomcp import Clock
-from robustnav_nodes.planner.search import Search, Step
+from robustnav_nodes.planner.search import Search
 from robustnav_nodes.search_space.pose_graph import Action
 from robustnav_nodes.search_space.space import SearchSpace
 
@@ -38,7 +39,7 @@ class SearchSession:
     Call `observe` where the robot stands, with the belief that takes the view from there into account: at
     the start and wherever it arrives. Drive to the goal of the answer, then call again; call `blocked`
     instead where the goal could not be reached. These two belong to one thread at a time and take as long as
-    a decision; `stop`, `state` and `ended` may be called from any thread meanwhile.
+    a decision; everything else may be called from any thread meanwhile.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class SearchSession:
         self._search = Search(space=space, parameters=parameters, rng=rng, clock=clock)
         self._robot: Pose2D | None = None
         self._stop_message: str | None = None
+        self._new_space: SearchSpace | None = None
         self._state = SearchState(
             phase=SearchPhase.SEARCHING, target=target, episode=episode, max_steps=parameters.max_steps
         )
@@ -80,6 +82,10 @@ class SearchSession:
         """
         if self.ended:
             return NextStep(state=self.state)
+        new_space, self._new_space = self._new_space, None
+        if new_space is not None:
+            self._space = new_space
+            self._search.move_to(new_space)
         check_cloud(self._space, cloud)
         pose = self._space.graph.nearest(robot)
         step = self._search.look(pose, self._space.visible(robot), cloud.probability)
@@ -91,6 +97,10 @@ class SearchSession:
         if not self.ended:
             self._search.close_way()
         return self.observe(robot, cloud)
+
+    def move_to(self, space: SearchSpace) -> None:
+        """Go on in `space`, whose map has grown or changed, from the next observation on."""
+        self._new_space = space
 
     def stop(self, message: str = "stopped") -> SearchState:
         """End the search as it stands, also while a decision is being made."""

@@ -18,7 +18,7 @@ from robustnav_nodes.search_space.pose_graph import NOWHERE, PoseGraph
 
 Int32 = NDArray[np.int32]
 NONE = -1
-_NEGLIGIBLE = 1e-9  # of the whole belief
+_NEGLIGIBLE = 1e-9  # mass
 
 
 class Place(NamedTuple):
