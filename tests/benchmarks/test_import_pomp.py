@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.export_pomp import TARGET_ID, export_pomp
-from robustnav_nodes.benchmarks.import_pomp import import_pomp, lay_out
+from robustnav_nodes.benchmarks.import_pomp import import_pomp
+from robustnav_nodes.benchmarks.pose_layout import lay_out
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
 from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability

@@ -24,13 +24,8 @@ from scipy.sparse import csgraph
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Bool, Float64, OccupancyMap, Pose2D
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
-from robustnav_nodes.benchmarks.import_pomp import (
-    Sighting,
-    read_instance_names,
-    read_json_object,
-    record_of,
-)
-from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
+from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
+from robustnav_nodes.benchmarks.text_files import read_instance_names, read_json_object
 from robustnav_nodes.search_space.camera_view import build_camera_view
 from robustnav_nodes.search_space.observability import build_observability
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
@@ -359,4 +354,4 @@ def _record(space: SearchSpace, boxes: list[Box], statistics: ClassStatistics) -
             weight = np.exp(-0.5 * (sigmas**2 - nearest**2))
             kept = weight > _NEGLIGIBLE
             sightings.append((box.pose, seen[kept], weight[kept]))
-    return record_of(statistics, sightings)
+    return DetectionRecord.of(statistics, sightings)

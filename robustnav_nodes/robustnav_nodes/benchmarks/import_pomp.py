@@ -12,20 +12,18 @@
 | `instance_id_map.txt` | name and number of each object; may be missing |
 """
 
-import json
-import math
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_msgs_py.values import Bool, Float64
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
-from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
+from robustnav_nodes.benchmarks.pose_layout import lay_out
+from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
+from robustnav_nodes.benchmarks.text_files import read_instance_names, read_json_object, read_lines
 from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability
 from robustnav_nodes.search_space.pose_graph import NOWHERE, Action, PoseGraph
@@ -34,13 +32,8 @@ from robustnav_nodes.search_space.space import SearchSpace
 COLUMNS = (Action.TURN_LEFT, Action.TURN_RIGHT, Action.FORWARD, Action.BACKWARD)  # of MatrixG.txt
 MAX_COLUMNS = 6  # two more that nobody uses now
 
-_HEADINGS = 12  # where no pose can turn all around
-_STEP_M = 0.30
 _AHEAD_M = 2.0  # where a candidate is drawn, from each pose that sees it
 _CELL_M = 0.20
-_ASIDE_M = 0.05
-
-Sighting = tuple[int, NDArray[np.int32], Float64]
 
 
 def import_pomp(folder: Path, target_id: int) -> SearchScene:
@@ -57,7 +50,7 @@ def import_pomp(folder: Path, target_id: int) -> SearchScene:
 
     Raises BadFileError where a file is missing or wrong, or nothing is known of `target_id`.
     """
-    poses = len(_lines(folder / "ListView.txt"))
+    poses = len(read_lines(folder / "ListView.txt"))
     if poses == 0:
         raise BadFileError(f"{str(folder / 'ListView.txt')!r} names no image: it must have a line per pose")
     truth = _read_bits(folder / "MatrixL_gt.txt", poses)
@@ -104,111 +97,8 @@ def import_pomp(folder: Path, target_id: int) -> SearchScene:
     )
 
 
-class Layout(NamedTuple):
-    """Where a picture of the graph shows each pose: float64 [n] each, and how many turns make a full one."""
-
-    x_m: Float64
-    y_m: Float64
-    yaw_rad: Float64
-    headings: int
-
-
-def lay_out(successors: NDArray[np.int32]) -> Layout:
-    """Make up coordinates for a graph that has none (successors: int32 [n, 4], as in PoseGraph).
-
-    Poses that turn into each other become one place; a move goes 0.30 m along the heading. The walk over
-    the places is breadth first, so where two ways to a place disagree, the shorter one decides. No two poses
-    come to lie on each other: a place that is taken, and what cannot be reached, is moved aside. The number
-    of headings is the most frequent length of a full turn, or 12.
-    """
-    headings = _full_turn(successors)
-    place, heading = _places(successors, headings)
-    members = np.split(np.argsort(place, kind="stable"), np.cumsum(np.bincount(place))[:-1])
-    turned = np.zeros(len(members), dtype=np.int64)  # to be added to the headings of a place's poses
-    spot: dict[int, tuple[float, float]] = {}
-    taken: set[tuple[int, int]] = set()
-    for first in range(len(members)):
-        if first in spot:
-            continue
-        farthest_m = max((x_m for x_m, _ in spot.values()), default=-_AHEAD_M)
-        spot[first] = _free_spot(farthest_m + _AHEAD_M, 0.0, taken)
-        queue = [first]
-        for here in queue:
-            for pose in members[here]:
-                yaw_rad = (heading[pose] + turned[here]) * math.tau / headings
-                for action, step_m in ((Action.FORWARD, _STEP_M), (Action.BACKWARD, -_STEP_M)):
-                    end = successors[pose, action]
-                    if end == NOWHERE or int(place[end]) in spot:
-                        continue
-                    there = int(place[end])
-                    turned[there] = heading[pose] + turned[here] - heading[end]
-                    x_m, y_m = spot[here]
-                    x_m, y_m = x_m + step_m * math.cos(yaw_rad), y_m + step_m * math.sin(yaw_rad)
-                    spot[there] = _free_spot(x_m, y_m, taken)
-                    queue.append(there)
-    return Layout(
-        x_m=np.array([spot[here][0] for here in place.tolist()]),
-        y_m=np.array([spot[here][1] for here in place.tolist()]),
-        yaw_rad=np.asarray((heading + turned[place]) % headings * (math.tau / headings), dtype=np.float64),
-        headings=headings,
-    )
-
-
-def record_of(statistics: ClassStatistics, sightings: list[Sighting]) -> DetectionRecord:
-    """The record of detections (pose, candidates, weights), in ascending order of the poses."""
-    return DetectionRecord(
-        statistics=statistics,
-        pose=np.array([pose for pose, _, _ in sightings], dtype=np.int32),
-        start=np.cumsum([0, *(len(seen) for _, seen, _ in sightings)], dtype=np.int64),
-        candidate=np.concatenate([np.zeros(0, np.int32), *(seen for _, seen, _ in sightings)]),
-        weight=np.concatenate([np.zeros(0), *(weight for _, _, weight in sightings)]),
-    )
-
-
-def read_instance_names(path: Path) -> dict[int, str]:
-    """Names by number from lines such as "red_mug 7"; a file that is missing names nothing."""
-    if not path.exists():
-        return {}
-    names = {}
-    for number, line in enumerate(_lines(path), start=1):
-        words = line.split()
-        if len(words) < 2 or not words[-1].isdecimal():
-            raise BadFileError(
-                f"line {number} of {str(path)!r} is {line!r:.80}: it must be a name, a blank and a number"
-            )
-        names[int(words[-1])] = " ".join(words[:-1])
-    return names
-
-
-def read_json_object(path: Path) -> dict[str, Any]:
-    """The JSON object in a file. Raises BadFileError where there is none."""
-    try:
-        content = json.loads(_text(path))
-    except (ValueError, RecursionError) as error:
-        raise BadFileError(f"{str(path)!r} is not JSON: {error}; get the file anew") from error
-    if not isinstance(content, dict):
-        raise BadFileError(f"{str(path)!r} must hold a JSON object, not {content!r:.80}")
-    return content
-
-
-def _lines(path: Path) -> list[str]:
-    """The lines of a text file, without the empty ones at its end."""
-    return _text(path).rstrip().splitlines()
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BadFileError(
-            f"cannot read {str(path)!r}: {error.strerror}; the folder must hold this file"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise BadFileError(f"{str(path)!r} is not text: {error}; get the file anew") from error
-
-
 def _rows(path: Path, poses: int) -> list[str]:
-    rows = _lines(path)
+    rows = read_lines(path)
     if len(rows) != poses:
         raise BadFileError(
             f"{str(path)!r} has {len(rows)} rows, ListView.txt has {poses}: both must have one for each pose"
@@ -274,7 +164,7 @@ def _read_successors(path: Path, poses: int) -> NDArray[np.int32]:
 
 def _read_inside(path: Path, cells: int) -> Bool:
     """bool [cells]."""
-    words = " ".join(_lines(path)).split()
+    words = " ".join(read_lines(path)).split()
     if len(words) != cells or not set(words) <= {"0", "1"}:
         odd = next((word for word in words if word not in ("0", "1")), None)
         wrong = f"{odd!r}" if odd is not None else f"{len(words)} values"
@@ -333,53 +223,4 @@ def _record(
         kept = weight > 0.0
         if kept.any():
             sightings.append((pose, seen[kept], weight[kept] / weight.max()))
-    return record_of(statistics, sightings)
-
-
-def _full_turn(successors: NDArray[np.int32]) -> int:
-    """How many turns left most often lead back to where they began."""
-    turns = _links(successors[:, [Action.TURN_LEFT]])
-    _, label = csgraph.connected_components(turns, directed=True, connection="strong")
-    length = np.bincount(label)
-    return int(np.bincount(length[length > 2]).argmax()) if np.any(length > 2) else _HEADINGS
-
-
-def _places(successors: NDArray[np.int32], headings: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The place that each pose belongs to, and its heading among the poses there: int64 [n] each.
-
-    A pose that would come to have the heading of another one at its place begins a place of its own.
-    """
-    count = len(successors)
-    place = np.full(count, NOWHERE, dtype=np.int64)
-    heading = np.zeros(count, dtype=np.int64)
-    places = 0
-    for first in range(count):
-        if place[first] != NOWHERE:
-            continue
-        place[first] = places
-        held = {0}
-        queue = [first]
-        for pose in queue:
-            for action, turn in ((Action.TURN_LEFT, 1), (Action.TURN_RIGHT, -1)):
-                end = int(successors[pose, action])
-                turned = int(heading[pose] + turn) % headings
-                if end != NOWHERE and place[end] == NOWHERE and turned not in held:
-                    place[end], heading[end] = places, turned
-                    held.add(turned)
-                    queue.append(end)
-        places += 1
-    return place, heading
-
-
-def _free_spot(x_m: float, y_m: float, taken: set[tuple[int, int]]) -> tuple[float, float]:
-    """(x_m, y_m), or the next free spot beside it; the spot is taken then."""
-    while (cell := (round(x_m / _ASIDE_M), round(y_m / _ASIDE_M))) in taken:
-        y_m += _ASIDE_M
-    taken.add(cell)
-    return x_m, y_m
-
-
-def _links(ends: NDArray[np.int32]) -> sparse.csr_matrix:
-    begins, column = np.nonzero(ends != NOWHERE)
-    count = len(ends)
-    return sparse.csr_matrix((np.ones(len(begins)), (begins, ends[begins, column])), shape=(count, count))
+    return DetectionRecord.of(statistics, sightings)

@@ -9,6 +9,8 @@ from robustnav_msgs_py.values import Bool, Float64
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.search_space.space import SearchSpace
 
+Sighting = tuple[int, NDArray[np.int32], Float64]  # a detection: its pose, candidates, and their weights
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DetectionRecord:
@@ -25,6 +27,17 @@ class DetectionRecord:
     start: NDArray[np.int64]
     candidate: NDArray[np.int32]
     weight: Float64
+
+    @classmethod
+    def of(cls, statistics: ClassStatistics, sightings: list[Sighting]) -> "DetectionRecord":
+        """From detections in ascending order of their poses."""
+        return cls(
+            statistics=statistics,
+            pose=np.array([pose for pose, _, _ in sightings], dtype=np.int32),
+            start=np.cumsum([0, *(len(seen) for _, seen, _ in sightings)], dtype=np.int64),
+            candidate=np.concatenate([np.zeros(0, np.int32), *(seen for _, seen, _ in sightings)]),
+            weight=np.concatenate([np.zeros(0), *(weight for _, _, weight in sightings)]),
+        )
 
     def at(self, pose: int, candidates: int) -> Float64:
         """float64 [m, candidates]: the densities of the m detections made at `pose`, 0 elsewhere."""

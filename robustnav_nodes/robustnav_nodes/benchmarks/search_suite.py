@@ -9,7 +9,7 @@ from robustnav_msgs_py.errors import BadMapError
 from robustnav_msgs_py.values import Bool
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.furnished_floor import FloorStyle, draw_floor
-from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
+from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
 from robustnav_nodes.search_space.pose_graph import NOWHERE
 from robustnav_nodes.search_space.space import SearchSpace
@@ -165,19 +165,11 @@ def _record(
     statistics: ClassStatistics,
 ) -> DetectionRecord:
     """Detections (pose, x_m, y_m) as normal densities over the candidates in view, the largest 1."""
-    start, candidates, weights = [0], [], []
+    spread: list[Sighting] = []
     for pose, x_m, y_m in sightings:
         seen = space.observability.seen_by(pose)
         squared = (space.candidates.x_m[seen] - x_m) ** 2 + (space.candidates.y_m[seen] - y_m) ** 2
         weight = np.exp(-0.5 * (squared - squared.min()) / sigma_m**2)
         kept = weight > _NEGLIGIBLE
-        candidates.append(seen[kept])
-        weights.append(weight[kept])
-        start.append(start[-1] + int(np.count_nonzero(kept)))
-    return DetectionRecord(
-        statistics=statistics,
-        pose=np.array([pose for pose, _, _ in sightings], dtype=np.int32),
-        start=np.array(start, dtype=np.int64),
-        candidate=np.concatenate([*candidates, np.zeros(0, dtype=np.int32)]).astype(np.int32),
-        weight=np.concatenate([*weights, np.zeros(0)]),
-    )
+        spread.append((pose, seen[kept], weight[kept]))
+    return DetectionRecord.of(statistics, spread)
