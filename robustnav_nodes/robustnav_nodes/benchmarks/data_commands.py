@@ -1,13 +1,14 @@
 """`robustnav data`: bring search scenes in from other people's formats, and take them out."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 
-from robustnav_nodes.benchmarks.search_scene import SearchScene
+if TYPE_CHECKING:  # loads numba, which no other command should wait for
+    from robustnav_nodes.benchmarks.search_scene import SearchScene
 
 data_app = typer.Typer(help="Build or import data sets.", no_args_is_help=True)
 import_app = typer.Typer(help="Bring data in from other formats.", no_args_is_help=True)
@@ -83,7 +84,7 @@ def export_pomp_command(
     _say(f"{out}: {summary(read)}; {target} is --target_id={TARGET_ID}")
 
 
-def summary(scene: SearchScene) -> str:
+def summary(scene: "SearchScene") -> str:
     """What a scene holds, in one line: "scene Home_001_1, 1192 poses, 840 candidates, 1 target (jar)"."""
     poses, candidates = len(scene.space.graph), len(scene.space.candidates)
     labels = ", ".join(target.label for target in scene.targets[:_NAMED])
@@ -98,7 +99,7 @@ def _count(count: int, thing: str) -> str:
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
 
 
-def _write(scene: SearchScene, path: Path) -> None:
+def _write(scene: "SearchScene", path: Path) -> None:
     from robustnav_nodes.benchmarks.scene_file import write_scene
 
     write_scene(scene, path)

@@ -75,13 +75,17 @@ def hide_targets(space: SearchSpace, name: str, difficulty: str, rng: np.random.
 
 
 def starts_of(scene: SearchScene, target: SearchTarget) -> NDArray[np.int32]:
-    """The starts from which no view of the target is nearer than three actions; all, where there are none."""
+    """The starts from which no view of the target is nearer than three actions; all, where there are none.
+
+    Of a scene without starts, any pose is one.
+    """
+    starts = scene.starts if len(scene.starts) else np.arange(len(scene.space.graph), dtype=np.int32)
     near = target.in_view.copy()
     for _ in range(_MIN_FIRST_VIEW - 1):
         next_to = scene.space.graph.successors
         near |= np.any((next_to != NOWHERE) & near[next_to], axis=1)
-    far = scene.starts[~near[scene.starts]]
-    return far if len(far) else scene.starts
+    far = starts[~near[starts]]
+    return far if len(far) else starts
 
 
 def _space_of(kind: Difficulty, rng: np.random.Generator) -> SearchSpace:
