@@ -12,6 +12,12 @@ from robustnav_nodes.planner.ending import (
 )
 from robustnav_nodes.planner.parameters import VARIANTS
 from robustnav_nodes.planner.policy import Sight
+from robustnav_nodes.search_space.candidates import Candidates
+
+
+def far_apart(count: int) -> Candidates:
+    """Candidates that have nothing to do with each other."""
+    return Candidates(x_m=3.0 * np.arange(count), y_m=np.zeros(count), size_m=0.2)
 
 
 def sight(probability, in_view, rose=(), is_new=True) -> Sight:
@@ -53,8 +59,8 @@ def test_a_single_candidate_need_only_be_in_view():
     tau = exit_threshold(1, 10.0, 0.5)
     assert told(LikelyLocation(1, tau), sight([1.0], [0])) == 0
     assert told(LikelyLocation(1, tau), sight([1.0], [])) is None
-    assert told(LikelyView(1, 0.9), sight([1.0], [0])) == 0
-    assert told(LikelyView(1, 0.9), sight([1.0], [])) is None
+    assert told(LikelyView(far_apart(1), 0.9), sight([1.0], [0])) == 0
+    assert told(LikelyView(far_apart(1), 0.9), sight([1.0], [])) is None
 
 
 def test_the_first_detection_ends_it_at_the_likeliest_place_that_it_raised():
@@ -76,7 +82,7 @@ def test_a_likely_location_ends_it_by_hand():
     assert LikelyLocation(3, tau=0.3).p_in_view(look) == 0.3
 
 
-@pytest.mark.parametrize("ending", [FirstDetection(), LikelyLocation(3, 0.1), LikelyView(3, 0.1)])
+@pytest.mark.parametrize("ending", [FirstDetection(), LikelyLocation(3, 0.1), LikelyView(far_apart(3), 0.1)])
 def test_a_view_of_nothing_finds_nothing(ending):
     look = sight([0.6, 0.1, 0.3], [])
     assert told(ending, look) is None
@@ -101,15 +107,15 @@ def test_views_to_commit_does_not_settle_for_a_place_below_tau():
 def test_a_likely_view_ends_it_by_hand():
     """No place is likely, but together they are: 0.3 + 0.4 + 0.2 of 0.89 wanted."""
     probability = [0.3, 0.4, 0.1, 0.2]
-    assert told(LikelyView(4, 0.89), sight(probability, [0, 1, 3], rose=[3])) == 1
-    assert told(LikelyView(4, 0.91), sight(probability, [0, 1, 3], rose=[3])) is None
-    assert told(LikelyView(4, 0.89), sight(probability, [1, 2, 3], rose=[3])) is None
-    assert LikelyView(4, 0.89).p_in_view(sight(probability, [0, 3])) == pytest.approx(0.5)
+    assert told(LikelyView(far_apart(4), 0.89), sight(probability, [0, 1, 3], rose=[3])) == 1
+    assert told(LikelyView(far_apart(4), 0.91), sight(probability, [0, 1, 3], rose=[3])) is None
+    assert told(LikelyView(far_apart(4), 0.89), sight(probability, [1, 2, 3], rose=[3])) is None
+    assert LikelyView(far_apart(4), 0.89).p_in_view(sight(probability, [0, 3])) == pytest.approx(0.5)
 
 
 def test_a_view_of_all_there_is_finds_nothing_where_nothing_was_detected():
     """R is about the candidates alone: together they hold all of it, also if the target is nowhere."""
-    ending = LikelyView(3, 0.9)
+    ending = LikelyView(far_apart(3), 0.9)
     assert told(ending, sight([0.3, 0.4, 0.3], [0, 1, 2])) is None
     assert told(ending, sight([0.1, 0.85, 0.05], [1, 2], rose=[1])) == 1  # now something was
     assert told(ending, sight([0.1, 0.85, 0.05], [0, 1])) == 1  # from elsewhere, where nothing is
@@ -127,7 +133,7 @@ def test_what_is_found_is_in_view_and_likely_enough(weights, views, kind):
         "detection": FirstDetection(),
         "location": LikelyLocation(count, 0.2),
         "two views": LikelyLocation(count, 0.2, views=2),
-        "view": LikelyView(count, 0.4),
+        "view": LikelyView(far_apart(count), 0.4),
     }[kind]
     probability = np.array(weights) / np.sum(weights)
     for view, rose in views:
@@ -147,7 +153,7 @@ def test_each_variant_ends_as_it_is_defined(parameters_with, variant):
     """POMP and BE at the first detection, PD and the baselines at tau = 10 / k, ours by what is in view."""
     kinds = {"pomp": FirstDetection, "pomp_be": FirstDetection}
     kinds |= dict.fromkeys(("pomp_pd", "pomp_be_pd", "random", "greedy"), LikelyLocation)
-    ending = ending_of(parameters_with(variant=variant, p_found=0.8), 400)
+    ending = ending_of(parameters_with(variant=variant, p_found=0.8), far_apart(400))
     assert type(ending) is kinds.get(variant, LikelyView)
     assert ending.threshold == {FirstDetection: 0.0, LikelyLocation: 10 / 400, LikelyView: 0.8}[type(ending)]
 
@@ -156,10 +162,17 @@ def test_each_variant_ends_as_it_is_defined(parameters_with, variant):
 def test_an_ending_that_is_asked_for_takes_the_place_of_the_variants_own(parameters_with, variant):
     kinds = {"detection": FirstDetection, "location": LikelyLocation, "view": LikelyView}
     for kind, expected in kinds.items():
-        assert type(ending_of(parameters_with(variant=variant, ending=kind), 400)) is expected
+        assert type(ending_of(parameters_with(variant=variant, ending=kind), far_apart(400))) is expected
 
 
 def test_views_to_commit_is_taken_from_the_parameters(parameters_with):
-    ending = ending_of(parameters_with(variant="pomp_be_pd", views_to_commit=2), 3)
+    ending = ending_of(parameters_with(variant="pomp_be_pd", views_to_commit=2), far_apart(3))
     assert told(ending, sight([0.1, 0.8, 0.1], [1], rose=[1])) is None
     assert told(ending, sight([0.1, 0.8, 0.1], [1], rose=[1])) == 1
+
+
+def test_the_middle_of_a_find_is_where_it_is_found():
+    """Five locations 0.3 m apart hold 0.1, 0.25, 0.2, 0.24 and 0.16; another find lies 5 m away."""
+    row = Candidates(x_m=np.array([0.0, 0.3, 0.6, 0.9, 1.2, 6.0]), y_m=np.zeros(6), size_m=0.2)
+    probability = [0.1, 0.25, 0.2, 0.24, 0.16, 0.05]
+    assert told(LikelyView(row, 0.9), sight(probability, range(6), rose=range(6))) == 2

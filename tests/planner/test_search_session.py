@@ -96,7 +96,7 @@ def test_the_lookaheads_decision_says_how_many_viewpoints_were_thought_through(s
 
 
 def ending_of_ours(space):
-    return ending_of(PlannerParameters(), len(space.candidates))
+    return ending_of(PlannerParameters(), space.candidates)
 
 
 def test_ours_docks_where_the_target_is_in_view_and_was_detected(session_with, cloud_of, space):

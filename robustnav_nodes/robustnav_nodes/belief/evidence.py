@@ -46,7 +46,7 @@ class LikelihoodEvidence:
     view a look says nothing: the ratio is 1. So a false alarm can be outweighed by looking again, and what
     the belief holds is a probability that a threshold can be set against.
 
-    recall: r near the camera; it falls in proportion to the distance, to recall * (1 - recall_loss) at
+    recall: r near the robot; it falls in proportion to the distance, to recall * (1 - recall_loss) at
     range_max_m.
     """
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import BeliefCloud, Float64
 from robustnav_nodes.search_space.candidates import Candidates
 
@@ -28,6 +29,28 @@ class LocationBelief:
         """Nothing is known yet: 1/k each (C1: k candidates; the thesis writes n, its number of poses)."""
         count = len(candidates)
         return cls(candidates=candidates, probability=np.full(count, 1.0 / count))
+
+    @classmethod
+    def weighted(cls, candidates: Candidates, weight: Float64, strength: float) -> "LocationBelief":
+        """Something is known beforehand: in proportion to `weight` (float64 [k], not negative, not all 0).
+
+        strength: in 0..1, the part of the belief that follows the weights; the rest is uniform, so that below
+        1 no location begins at 0. Raises BadParameterError where weights or strength are none, or where a
+        location would begin at 0.
+        """
+        if weight.shape != (len(candidates),) or not np.isfinite(weight).all() or np.any(weight < 0.0):
+            raise BadParameterError(
+                f"a prior needs {len(candidates)} finite weights, none of them negative: got {weight}"
+            )
+        if not 0.0 <= strength <= 1.0 or weight.sum() <= 0.0:
+            raise BadParameterError(
+                f"a prior of strength {strength!r} and weights that sum to {weight.sum()}: the strength must "
+                "lie in 0..1 and some weight above 0"
+            )
+        probability = strength * weight / weight.sum() + (1.0 - strength) / len(candidates)
+        if probability.min() <= 0.0:
+            raise BadParameterError("a weight is 0 and the strength 1: a location at 0 could never come back")
+        return cls(candidates=candidates, probability=probability)
 
     def updated(self, factor: Float64, probability_floor: float) -> "LocationBelief":
         """Bayes' rule with `factor` (d, float64 [k], see `observation`): p_j <- p_j d_j / sum (eq. 3.1).

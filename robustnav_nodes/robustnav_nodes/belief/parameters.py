@@ -19,14 +19,21 @@ class BeliefParameters(SearchSpaceParameters):
         "what a look is worth: a likelihood ratio, or the thesis' F1 factors",
         choices=("likelihood", "f1"),
     )
-    recall_min: float = parameter(0.05, "a detector's recall counts as at least this", low=0.001, high=0.999)
-    recall_max: float = parameter(0.98, "a detector's recall counts as at most this", low=0.001, high=0.9999)
+    recall_min: float = parameter(
+        0.05, "likelihood: a detector's recall counts as at least this", low=0.001, high=0.999
+    )
+    recall_max: float = parameter(
+        0.98, "likelihood: a detector's recall counts as at most this", low=0.001, high=0.9999
+    )
     recall_loss: float = parameter(
-        0.0, "part of the recall that is lost at range_max_m, in proportion nearer by", low=0.0, high=1.0
+        0.0,
+        "likelihood: part of the recall that is lost at range_max_m, in proportion nearer by",
+        low=0.0,
+        high=1.0,
     )
     false_alarms_min: float = parameter(
         1e-3,
-        "a detector counts as firing at nothing at least this often",
+        "likelihood: a detector counts as firing at nothing at least this often",
         unit="per look",
         low=1e-9,
         high=1.0,
@@ -39,7 +46,7 @@ class BeliefParameters(SearchSpaceParameters):
         high=1.0,
     )
     f1_min: float = parameter(
-        0.5, "a detector's F1 counts as at least this; at 0.5 its silence says nothing", low=0.5, high=1.0
+        0.5, "f1: a detector's F1 counts as at least this; at 0.5 its silence says nothing", low=0.5, high=1.0
     )
     f1_max: float = parameter(0.99, "f1: a detector's F1 counts as at most this", low=0.5, high=0.999999)
     probability_floor: float = parameter(

@@ -18,20 +18,32 @@ class BeliefTracker:
 
     `statistics` are the detector's for the target's class. Start a new tracker for a new target, or to
     forget every observation.
+
+    prior: weights of the view's candidates before the first look, float64 [k] (see `prior`); None: all alike.
     """
 
     def __init__(
-        self, *, view: CameraView, statistics: ClassStatistics, parameters: BeliefParameters
+        self,
+        *,
+        view: CameraView,
+        statistics: ClassStatistics,
+        parameters: BeliefParameters,
+        prior: Float64 | None = None,
     ) -> None:
         self._view = view
         self._parameters = parameters
+        self._statistics = statistics
         self._evidence = evidence_of(statistics, view.share_in_view(), parameters)
         self._gate = ViewGate(parameters)
-        self.belief = LocationBelief.uniform(view.candidates)
+        if prior is None:
+            self.belief = LocationBelief.uniform(view.candidates)
+        else:  # C4: no location begins below the floor
+            self.belief = LocationBelief.weighted(view.candidates, prior, 1.0 - parameters.probability_floor)
 
     def move_to(self, view: CameraView) -> None:
         """Go on with what is known on another view of the same floor, whose map has grown or changed."""
         self._view = view
+        self._evidence = evidence_of(self._statistics, view.share_in_view(), self._parameters)
         self.belief = self.belief.carried_to(view.candidates)
 
     def observe(

@@ -68,7 +68,7 @@ def search_command(
         raise BadParameterError("--target-id is the object of a folder: name the folder with --scenes")
     if episodes == 0 and graph == 0:
         raise BadParameterError("--episodes 0 leaves nothing to do but --graph N, which is not given")
-    names = planners.split(",") if planners is not None else list(NAMES)
+    names = [name.strip() for name in planners.split(",")] if planners is not None else list(NAMES)
     chosen = contestants(names, dock=dock, simulations=simulations)
     check_writable(json_file)
     if plots is not None:
@@ -94,7 +94,7 @@ def search_command(
             default_planner=DEFAULT,
             settings={**settings_of(jobs, chosen), "graph_seeds": list(range(seed, seed + graph))},
             rows=as_json(rows),
-            gain_over_greedy=as_json(gained),
+            gains=as_json(gained),
             wall_s=round(wall_s, 1),
         )
     if plots is not None and jobs:

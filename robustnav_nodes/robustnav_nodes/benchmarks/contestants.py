@@ -15,8 +15,10 @@ NO_TIME_LIMIT_S = 60.0  # a decision is made of simulations alone: the same on a
 
 # C2: outside a detection the thesis' factor is 0, for ever; ours is this small.
 THESIS_BELIEF = BeliefParameters(evidence="f1", detection_floor=1e-3)
-# It docks at the nearest pose (the least that the parameter takes), and does not look again there.
-THESIS_DOCKING: dict[str, Any] = {"docking_distance_m": 0.1, "confirm_at_dock": False}
+# The thesis' planner does not look again where it docks.
+THESIS_DOCKING: dict[str, Any] = {"confirm_at_dock": False}
+# All dock at the nearest pose, as the thesis has it: this is the least that the parameter takes.
+NEAREST_M = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,6 +79,7 @@ ALL = (
         views_to_commit=2,
     ),
     _of_ours("pomp_belief", "POMCP on the belief; our evidence and ending"),
+    _of_ours("pomp_guided", "POMCP on the belief, rollouts go where it is; our evidence and ending"),
     _of_ours(
         "lookahead_discount",
         "lookahead, a find is worth 0.95 ^ steps",
@@ -104,7 +107,11 @@ def contestants(names: Sequence[str], *, dock: bool, simulations: int) -> tuple[
         dataclasses.replace(
             by_name[name],
             planner=dataclasses.replace(
-                by_name[name].planner, dock=dock, simulations=simulations, time_budget_s=NO_TIME_LIMIT_S
+                by_name[name].planner,
+                dock=dock,
+                docking_distance_m=NEAREST_M,
+                simulations=simulations,
+                time_budget_s=NO_TIME_LIMIT_S,
             ),
         )
         for name in names

@@ -55,6 +55,7 @@ def graph_row(
         outcomes=[episode.outcome for episode in episodes],
         spl=np.array([episode.metrics.spl or 0.0 for episode in episodes]),
         steps=[episode.metrics.steps or 0 for episode in episodes],
+        wrong_stops=[episode.outcome is Outcome.LOCALISATION_ERROR for episode in episodes],
         decision_ms=[time for episode in episodes for time in episode.decision_ms],
     )
 

@@ -25,6 +25,7 @@ from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Bool, Float64, OccupancyMap, Pose2D
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
+from robustnav_nodes.benchmarks.search_suite import DESTINATION_M
 from robustnav_nodes.benchmarks.text_files import read_instance_names, read_json_object
 from robustnav_nodes.search_space.camera_view import build_camera_view
 from robustnav_nodes.search_space.observability import build_observability
@@ -51,7 +52,6 @@ _LEAST_SPREAD = 1e-3  # of bearings that meet in a point: variance of their dire
 _LEAST_SIGMA_RAD = math.radians(3.0)
 _BESIDE = 2.0  # sigmas; a box farther beside all candidates in view is about none of them
 _NEGLIGIBLE = 1e-6
-_DESTINATION_M = 0.5
 _DAMAGE = (ValueError, TypeError, KeyError, IndexError, RuntimeError, EOFError, MatReadError, zlib.error)
 
 
@@ -337,7 +337,7 @@ def _destination(space: SearchSpace, cameras: Cameras, boxes: list[Box], in_view
     candidates, graph = space.candidates, space.graph
     place = int(np.argmin(np.hypot(candidates.x_m - x_m, candidates.y_m - y_m)))
     distance_m = np.hypot(graph.x_m - candidates.x_m[place], graph.y_m - candidates.y_m[place])
-    return np.asarray(in_view & (distance_m <= distance_m[in_view].min() + _DESTINATION_M), dtype=np.bool_)
+    return np.asarray(in_view & (distance_m <= distance_m[in_view].min() + DESTINATION_M), dtype=np.bool_)
 
 
 def _record(space: SearchSpace, boxes: list[Box], statistics: ClassStatistics) -> DetectionRecord:

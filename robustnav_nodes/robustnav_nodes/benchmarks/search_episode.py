@@ -6,13 +6,13 @@ from enum import StrEnum
 import numpy as np
 
 from robustnav_msgs_py.records import SearchPhase
-from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.evidence import evidence_of
-from robustnav_nodes.belief.location_belief import LocationBelief
+from robustnav_msgs_py.values import Float64
 from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.benchmarks.recorded_belief import RecordedBelief
 from robustnav_nodes.benchmarks.search_scene import SearchScene, SearchTarget
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.search import Search
+from robustnav_nodes.search_space.pose_graph import PoseGraph
 
 
 class Outcome(StrEnum):
@@ -27,12 +27,13 @@ class Outcome(StrEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EpisodeResult:
     """steps: actions taken; shortest: fewest actions from the start to a pose that counts (at least 1);
-    decision_ms: time of each decision.
+    is_wrong_stop: whether it stopped where the target is not in view; decision_ms: time of each decision.
     """
 
     outcome: Outcome
     steps: int
     shortest: int
+    is_wrong_stop: bool
     decision_ms: tuple[float, ...]
 
     @property
@@ -63,42 +64,53 @@ def run_episode(
     belief_parameters: BeliefParameters,
     rng: np.random.Generator,
     moments: list[BeliefMoment] | None = None,
+    *,
+    prior: Float64 | None = None,
+    open_graph: PoseGraph | None = None,
 ) -> EpisodeResult:
     """Search for `target` from pose `start`; each look is added to `moments`, if given.
+
+    prior: weights of the candidates, float64 [k]; open_graph: the scene's graph without the ways that prove
+    blocked when the robot tries them, each of which costs it a step; None: all ways are open.
 
     With docking (`planner.dock`) it succeeds at a destination pose of the target, without where the target
     is in view. The detector's word is taken once for each pose.
     """
-    space, record = scene.space, target.detections[detector]
-    evidence = evidence_of(record.statistics, space.observability.share_in_view(), belief_parameters)
-    belief = LocationBelief.uniform(space.candidates)
-    search = Search(space=space, parameters=planner, rng=rng)
-    looked: Bool = np.zeros(len(space.graph), dtype=np.bool_)
+    space = scene.space
+    open_graph = space.graph if open_graph is None else open_graph
+    belief = RecordedBelief(space, target.detections[detector], belief_parameters, prior)
+    search = Search(space=space, parameters=planner, rng=rng, prior=belief.probability)
     counts = target.destination if planner.dock and target.destination is not None else target.in_view
-    shortest = max(1, int(space.graph.steps_from(start)[counts].min()))
-    pose, decision_ms, was_found = start, [], False
+    shortest = max(1, int(open_graph.steps_from(start)[counts].min()))
+    pose, decision_ms, was_in_view = start, [], False
     while True:
         in_view = space.observability.row(pose)
-        if not looked[pose]:
-            looked[pose] = True
-            densities = record.at(pose, space.observability.candidates)
-            belief = belief.updated(evidence.factor(in_view, densities), belief_parameters.probability_floor)
+        belief.look(pose)
         if moments is not None:
             moments.append(BeliefMoment(pose=pose, probability=belief.probability))
         step = search.look(pose, in_view, belief.probability)
-        was_found |= step.location is not None and bool(target.in_view[pose])
+        if step.begins_docking or not planner.dock:
+            was_in_view = bool(target.in_view[pose])  # the find that counts is the last one
         if step.choice is not None:
-            decision_ms.append(step.choice.elapsed_ms)
+            decision_ms.append(step.elapsed_ms)
         if not step.path:
             break
-        pose = step.path[1]
+        if step.path[1] in open_graph.successors[pose]:
+            pose = step.path[1]
+        else:
+            search.close_way()
 
+    was_found = step.phase is SearchPhase.FOUND
     outcome = Outcome.OTHER_ERROR
-    if step.phase is SearchPhase.FOUND:
+    if was_found:
         if counts[pose]:
             outcome = Outcome.SUCCESS
         else:
-            outcome = Outcome.DOCKING_ERROR if was_found else Outcome.LOCALISATION_ERROR
+            outcome = Outcome.DOCKING_ERROR if was_in_view else Outcome.LOCALISATION_ERROR
     return EpisodeResult(
-        outcome=outcome, steps=search.steps, shortest=shortest, decision_ms=tuple(decision_ms)
+        outcome=outcome,
+        steps=search.steps,
+        shortest=shortest,
+        is_wrong_stop=was_found and not target.in_view[pose],
+        decision_ms=tuple(decision_ms),
     )

@@ -36,8 +36,10 @@ _STYLE = {
     "pomp_be_pd_two_views": ("#7b5cc4", ":", "D"),
     "pomp_belief": ("#9bd3bd", "-.", "P"),
     "lookahead_discount": ("#f2a55e", "--", "X"),
+    "pomp_guided": ("#57b894", ":", "P"),
     "lookahead": ("#d9480f", "-", "o"),
 }
+_OTHER_STYLE = ("#000000", ":", ".")
 
 
 def draw_spl_by_length(played: Sequence[PlayedEpisode], png: Path) -> None:
@@ -103,7 +105,7 @@ def _draw_lines(axes: Axes, episodes: Sequence[PlayedEpisode]) -> None:
         spl = np.array([result.spl for result in results])
         bins = bins_of(shortest)
         middle = [float(np.median(shortest[chosen])) for chosen in bins]
-        color, line, marker = _STYLE[planner]
+        color, line, marker = _STYLE.get(planner, _OTHER_STYLE)
         is_default = planner == DEFAULT
         axes.plot(
             middle,

@@ -21,7 +21,7 @@ PLACE_SIGMA_M = 0.5  # of a detected place, noisy detector
 PERFECT_SIGMA_M = 0.1
 _NEGLIGIBLE = 1e-6  # densities below this are not kept
 _MIN_FIRST_VIEW = 3  # actions between a start and the nearest view of the target
-_DESTINATION_M = 1.0  # poses within this of the nearest that sees the target are as good to stop at
+DESTINATION_M = 0.5  # poses within this of the nearest that sees the target are as good to stop at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,7 +125,7 @@ def _target(space: SearchSpace, place: int, number: int, rng: np.random.Generato
 def _destinations(space: SearchSpace, place: int, in_view: Bool) -> Bool:
     x_m, y_m = space.candidates.x_m[place], space.candidates.y_m[place]
     distance_m = np.hypot(space.graph.x_m - x_m, space.graph.y_m - y_m)
-    near = distance_m <= distance_m[in_view].min() + _DESTINATION_M
+    near = distance_m <= distance_m[in_view].min() + DESTINATION_M
     return np.asarray(in_view & near, dtype=np.bool_)
 
 

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from robustnav_nodes.benchmarks.bootstrap import Interval
 from robustnav_nodes.benchmarks.contestants import DEFAULT
-from robustnav_nodes.benchmarks.search_bench import GREEDY, Gain, SearchRow
+from robustnav_nodes.benchmarks.search_bench import Gain, SearchRow
 from robustnav_nodes.benchmarks.search_suite import NOISY, PERFECT
 
 # METHODS 4: averages of the thesis' tables 3.1 and 3.3, on the Active Vision Dataset.
@@ -22,7 +22,6 @@ THESIS = {
 
 def show_rows(console: Console, rows: Sequence[SearchRow], gained: Sequence[Gain], *, dock: bool) -> None:
     """A table for each difficulty and detector, planners in the order of `rows`."""
-    gain_in = {(gain.difficulty, gain.detector): gain for gain in gained}
     for (difficulty, detector), group in groupby(rows, lambda row: (row.difficulty, row.detector)):
         of_cell = list(group)
         console.print()
@@ -33,8 +32,9 @@ def show_rows(console: Console, rows: Sequence[SearchRow], gained: Sequence[Gain
         console.print("[dim]wrong: stopped where the target is not in view; other: not found[/]")
         if detector in THESIS:
             console.print(f"[dim]thesis, AVDB: other data (table {THESIS[detector]})[/]")
-        if (difficulty, detector) in gain_in:
-            console.print(_sentence(gain_in[difficulty, detector]))
+        for gain in gained:
+            if (gain.difficulty, gain.detector) == (difficulty, detector):
+                console.print(_sentence(gain))
 
 
 def _table(rows: Sequence[SearchRow], *, dock: bool) -> Table:
@@ -64,7 +64,7 @@ def _sentence(gain: Gain) -> str:
     low, high = ("?" if bound is None else f"{bound:.2f}" for bound in gain.spl_ratio_ci)
     sr_low, sr_high = gain.sr_difference_ci
     return (
-        f"{DEFAULT} over {GREEDY}, same episodes: SPL x {ratio} ({low} to {high}), "
+        f"{DEFAULT} over {gain.over}, same episodes: SPL x {ratio} ({low} to {high}), "
         f"SR {gain.sr_difference:+.2f} ({sr_low:+.2f} to {sr_high:+.2f})"
     )
 

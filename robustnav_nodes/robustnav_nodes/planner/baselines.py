@@ -41,24 +41,30 @@ class Greedy:
         self._reach = empty_reach(len(space.graph))
         self._can_be_seen = space.observability.seen_from_somewhere()
         self._unseen: Bool = self._can_be_seen.copy()
+        self._been: Bool = np.zeros(len(space.graph), dtype=np.bool_)
 
     def looked(self, sight: Sight) -> None:
-        """See Policy; a candidate where the detector fired stays worth a look."""
+        """See Policy; a candidate where the detector fired stays worth a look from elsewhere."""
+        self._been[sight.pose] = True
         self._unseen = (self._unseen & ~sight.in_view) | (sight.in_view & sight.rose)
         if not self._unseen.any():
-            self._unseen = self._can_be_seen.copy()
+            self._begin_again()
 
     def decide(self, situation: Situation, rng: np.random.Generator) -> Choice | None:
         """See Policy."""
         choice = self._towards_unseen(situation)
-        if choice is None:  # what is left is seen from here alone, or from nowhere that it can reach
-            self._unseen = self._can_be_seen.copy()
+        if choice is None:  # what is left is seen from where it has been alone, or from nowhere in reach
+            self._begin_again()
             choice = self._towards_unseen(situation)
         return choice
 
+    def _begin_again(self) -> None:
+        self._unseen = self._can_be_seen.copy()
+        self._been[:] = False
+
     def _towards_unseen(self, situation: Situation) -> Choice | None:
-        mass, never_looked = self._unseen.astype(np.float64), np.zeros(len(situation.graph), dtype=np.bool_)
-        return _towards_best(situation, self._observability, self._reach, mass, never_looked)
+        mass = self._unseen.astype(np.float64)
+        return _towards_best(situation, self._observability, self._reach, mass, self._been.copy())
 
 
 class GreedyGain:

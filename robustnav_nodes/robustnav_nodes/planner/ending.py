@@ -4,9 +4,12 @@ from typing import Protocol
 
 import numpy as np
 
-from robustnav_msgs_py.values import Bool
+from robustnav_msgs_py.values import Bool, Float64
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.policy import Sight
+from robustnav_nodes.search_space.candidates import Candidates
+
+_AROUND_M = 1.0  # one target's detections lie this near to each other
 
 _OF_VARIANT = {
     "random": "location",
@@ -19,9 +22,13 @@ _OF_VARIANT = {
 
 
 class Ending(Protocol):
-    """Says where the target is found, if it is. threshold: the probability that is enough."""
+    """Says where the target is found, if it is.
+
+    threshold: the probability that is enough; may_change: whether a later look can say otherwise.
+    """
 
     threshold: float
+    may_change: bool
 
     def looked(self, sight: Sight) -> None:
         """A look counted."""
@@ -37,6 +44,7 @@ class FirstDetection:
     """POMP: the first detection ends the search, at the likeliest place that it raised."""
 
     threshold = 0.0
+    may_change = False
 
     def looked(self, sight: Sight) -> None:
         """See Ending."""
@@ -59,6 +67,8 @@ class LikelyLocation:
     `views` > 1 asks besides that its probability has risen in that many looks: a second viewpoint before
     commitment.
     """
+
+    may_change = True
 
     def __init__(self, candidates: int, tau: float, views: int = 1) -> None:
         self.threshold = tau
@@ -93,9 +103,12 @@ class LikelyView:
     a single candidate, which cannot rise, needs nothing more than the view.
     """
 
-    def __init__(self, candidates: int, p_found: float) -> None:
+    may_change = True
+
+    def __init__(self, candidates: Candidates, p_found: float) -> None:
         self.threshold = p_found
-        self._risen: Bool = np.full(candidates, candidates == 1)
+        self._candidates = candidates
+        self._risen: Bool = np.full(len(candidates), len(candidates) == 1)
 
     def looked(self, sight: Sight) -> None:
         """See Ending."""
@@ -105,7 +118,20 @@ class LikelyView:
         """See Ending."""
         if self.p_in_view(sight) < self.threshold or not (sight.in_view & self._risen).any():
             return None
-        return int(np.argmax(np.where(sight.in_view, sight.probability, -1.0)))
+        return self._middle(np.where(sight.in_view, sight.probability, 0.0))
+
+    def _middle(self, probability: Float64) -> int:
+        """The candidate nearest to the mean of what lies around the likeliest one.
+
+        Of many that are nearly as likely, the likeliest is a matter of luck; the mean errs least.
+        """
+        x_m, y_m = self._candidates.x_m, self._candidates.y_m
+        best = int(np.argmax(probability))
+        around = np.hypot(x_m - x_m[best], y_m - y_m[best]) <= _AROUND_M
+        weight = np.where(around, probability, 0.0)
+        mean_x_m, mean_y_m = np.average(x_m, weights=weight), np.average(y_m, weights=weight)
+        off_m = np.where(weight > 0.0, np.hypot(x_m - mean_x_m, y_m - mean_y_m), np.inf)
+        return int(np.argmin(off_m))
 
     def p_in_view(self, sight: Sight) -> float:
         """See Ending: that the target is anywhere in view."""
@@ -127,7 +153,7 @@ def exit_threshold(candidates: int, confidence: float, tau_max: float) -> float:
     return tau if tau > nothing_known else 0.5 * (nothing_known + 1.0)
 
 
-def ending_of(parameters: PlannerParameters, candidates: int) -> Ending:
+def ending_of(parameters: PlannerParameters, candidates: Candidates) -> Ending:
     """The ending that `parameters` ask for."""
     kind = (
         _OF_VARIANT.get(parameters.variant, "view") if parameters.ending == "variant" else parameters.ending
@@ -135,6 +161,7 @@ def ending_of(parameters: PlannerParameters, candidates: int) -> Ending:
     if kind == "detection":
         return FirstDetection()
     if kind == "location":
-        tau = exit_threshold(candidates, parameters.confidence, parameters.tau_max)
-        return LikelyLocation(candidates, tau, parameters.views_to_commit)
+        count = len(candidates)
+        tau = exit_threshold(count, parameters.confidence, parameters.tau_max)
+        return LikelyLocation(count, tau, parameters.views_to_commit)
     return LikelyView(candidates, parameters.p_found)

@@ -58,9 +58,9 @@ class Lookahead:
         began = self._clock()
         here, parameters = situation.pose, self._parameters
         place = place_of(situation.graph, self._observability)
-        reached = walk_everywhere(place, self._reach, here)
         if self._weight is None:
-            self._weight = self._weigh(place, reached)
+            self._weight = self._weigh(place, situation.start)
+        reached = walk_everywhere(place, self._reach, here)
         mass = situation.sight.probability * self._weight
         outlook = outlook_on(place, mass, situation.visited.copy())
         goals = self._goals(outlook, reached)
@@ -92,14 +92,14 @@ class Lookahead:
             values=values,
             visits=visits,
             simulations=tried,
-            elapsed_ms=1000.0 * (self._clock() - began),
             reason=f"towards a view of {in_view:.1%} of the belief",
         )
 
-    def _weigh(self, place: Place, reached: int) -> Float64:
+    def _weigh(self, place: Place, start: int) -> Float64:
         """float64 [k]: what finding each candidate is worth, before the steps that it takes."""
         if self._parameters.worth == "discount":
             return np.ones(self._observability.candidates)
+        reached = walk_everywhere(place, self._reach, start)
         steps = first_sight_distance(place, self._reach, reached)
         return np.where(np.isfinite(steps), np.maximum(steps, 1.0), 0.0)
 

@@ -18,6 +18,7 @@ VARIANTS = (
     "pomp_pd",
     "pomp_be_pd",
     "pomp_belief",
+    "pomp_guided",
     "lookahead",
 )
 
@@ -28,10 +29,17 @@ class PlannerParameters(SearchSpaceParameters, PomcpParameters):
 
     variant: str = parameter("lookahead", "baseline, planner of the thesis, or ours", choices=VARIANTS)
 
-    reward_seen: float = parameter(1000.0, "reward for seeing the target", low=0.0, high=1e6)
-    cost_step: float = parameter(1.0, "cost of a step that does not show the target", low=0.0, high=1e6)
-    cost_revisit: float = parameter(10.0, "its cost where the pose was visited before", low=0.0, high=1e6)
+    reward_seen: float = parameter(1000.0, "pomp...: reward for seeing the target", low=0.0, high=1e6)
+    cost_step: float = parameter(
+        1.0, "pomp...: cost of a step that does not show the target", low=0.0, high=1e6
+    )
+    cost_revisit: float = parameter(
+        10.0, "pomp...: its cost where the pose was visited before", low=0.0, high=1e6
+    )
 
+    guidance: float = parameter(
+        0.8, "pomp_guided: part of the rollouts' steps that go where the belief is", low=0.0, high=1.0
+    )
     recall: float = parameter(
         0.6, "lookahead: how likely a target in view is detected, as far as planning goes", low=0.01, high=1.0
     )

@@ -56,8 +56,7 @@ class CandidatesNotRuledOut:
         members = np.nonzero(self.not_ruled_out)[0]
         if self.tours == 1:
             return members[rng.integers(len(members), size=count)]
-        weight = self._probability[members]
-        return rng.choice(members, size=count, p=weight / weight.sum())
+        return _drawn(members, self._probability, count, rng)
 
     def decided(self, plan: Plan, particles: Particles) -> None:
         """See ParticleSource; this source does not depend on the plan."""
@@ -80,9 +79,7 @@ class BelievedCandidates:
 
     def draw(self, count: int, rng: np.random.Generator) -> Particles:
         """See ParticleSource."""
-        members = np.nonzero(self._can_be_seen)[0]
-        weight = self._probability[members]
-        return rng.choice(members, size=count, p=weight / weight.sum())
+        return _drawn(np.nonzero(self._can_be_seen)[0], self._probability, count, rng)
 
     def decided(self, plan: Plan, particles: Particles) -> None:
         """See ParticleSource; this source does not depend on the plan."""
@@ -135,3 +132,10 @@ class ParticleFilter:
             mine = parents == parent
             moved[mine] = choice[rng.integers(len(choice), size=int(mine.sum()))]
         return moved
+
+
+def _drawn(members: Particles, probability: Float64, count: int, rng: np.random.Generator) -> Particles:
+    """`count` of `members` by their probability (float64 [k]); all alike where a belief gives them none."""
+    weight = probability[members]
+    total = weight.sum()
+    return rng.choice(members, size=count, p=weight / total if total > 0.0 else None)

@@ -15,8 +15,8 @@ class Sight:
     """One look from a pose of the graph, and the belief that takes it into account.
 
     probability: R, float64 [k]; in_view: bool [k]; rose: bool [k], the candidates in view whose probability
-    grew since the look before, so that the detector fired there; is_new: whether the belief changed at all,
-    that is, whether the view counted.
+    grew since the look before, so that the detector fired there; is_new: whether this is the first look from
+    the pose, or the belief changed.
     """
 
     pose: int
@@ -42,13 +42,14 @@ class Situation:
     """Where a decision is made.
 
     graph: the poses and the ways that are open; visited: bool [n], where the robot has been, here included;
-    step: how many actions were taken so far.
+    step: how many actions were taken so far; start: the pose where the search began.
     """
 
     graph: PoseGraph
     sight: Sight
     visited: Bool
     step: int
+    start: int
 
     @property
     def pose(self) -> int:
@@ -68,7 +69,6 @@ class Choice:
     values: Float64
     visits: NDArray[np.int32]
     simulations: int
-    elapsed_ms: float
     reason: str
 
 
@@ -82,7 +82,7 @@ class Policy(Protocol):
         """The next action, one that `graph` allows; None where there is nothing left to look at."""
 
 
-def choose(action: int, reason: str, elapsed_ms: float = 0.0) -> Choice:
+def choose(action: int, reason: str) -> Choice:
     """A choice that weighed nothing."""
     actions = 4
     return Choice(
@@ -90,7 +90,6 @@ def choose(action: int, reason: str, elapsed_ms: float = 0.0) -> Choice:
         values=np.full(actions, np.nan),
         visits=np.zeros(actions, dtype=np.int32),
         simulations=0,
-        elapsed_ms=elapsed_ms,
         reason=reason,
     )
 

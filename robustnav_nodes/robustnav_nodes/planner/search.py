@@ -33,7 +33,7 @@ class Search(Course):
         prior: Float64 | None = None,
     ) -> None:
         super().__init__(space=space, parameters=parameters, rng=rng, clock=clock)
-        self._watch = Watch(len(space.candidates), parameters, prior)
+        self._watch = Watch(space.candidates, parameters, prior)
 
     @property
     def ending(self) -> Ending:
@@ -44,9 +44,10 @@ class Search(Course):
         """Take in what the robot knows at `pose` (in_view: bool [k]; probability: R, float64 [k])."""
         sight = self._watch.look(pose, in_view, probability)
         self._took_in(sight)
-        return self._go_on(sight, self.ending.found(sight))
+        found = self.ending.found(self._asked(sight))
+        return self._go_on(sight, found, may_change=self.ending.may_change)
 
     def move_to(self, space: SearchSpace) -> None:
-        """See Course; what had risen must rise once more."""
+        """See Course and Watch."""
         super().move_to(space)
-        self._watch = Watch(len(space.candidates), self._parameters)
+        self._watch.move_to(space.candidates, self._parameters)

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from robustnav_nodes.planner.guide import NO_GUIDE, Guide
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.pomcp import Tree, simulate
 from robustnav_nodes.planner.problem import Particles, Problem, State, implement
-from robustnav_nodes.planner.random_stream import Stream, below
+from robustnav_nodes.planner.random_stream import Stream, below, uniform
 from robustnav_nodes.search_space.compiled import compiled, compiled_into_callers
 from robustnav_nodes.search_space.observability import Observability
 from robustnav_nodes.search_space.pose_graph import NOWHERE, Action, PoseGraph
@@ -27,6 +28,8 @@ class SearchModel(NamedTuple):
     last_seer: int32 [n], scratch: the last simulation whose target is seen from there. Marking the poses
     that see it once is cheaper than asking a table of n x k at every step.
     last_visit: int32 [n], scratch: the last simulation that was there, NEVER, or ALWAYS where the robot was.
+    guide: the plan that a rollout's step follows with probability `guidance`; sees_again: whether a pose
+    where the robot was before can still show the target.
     """
 
     successors: NDArray[np.int32]
@@ -36,6 +39,9 @@ class SearchModel(NamedTuple):
     seers: NDArray[np.int32]
     last_seer: NDArray[np.int32]
     last_visit: NDArray[np.int32]
+    guide: Guide
+    guidance: float
+    sees_again: bool
     start: int
     reward_seen: float
     cost_step: float
@@ -48,8 +54,14 @@ def search_model(
     start: int,
     visited: NDArray[np.bool_],
     parameters: PlannerParameters,
+    guide: Guide | None = None,
+    *,
+    sees_again: bool = True,
 ) -> SearchModel:
-    """The model for one decision at pose `start`; `visited` (bool [n]): where the robot was before."""
+    """The model for one decision at pose `start`; `visited` (bool [n]): where the robot was before.
+
+    guide: followed by rollouts' steps with probability `parameters.guidance`; None: they go anywhere.
+    """
     last_visit = np.where(visited, ALWAYS, NEVER)
     last_visit[start] = ALWAYS
     ways, way_count = _ways(graph.successors)
@@ -61,6 +73,9 @@ def search_model(
         seers=observability.seers,
         last_seer=np.full(len(graph), NEVER),
         last_visit=last_visit,
+        sees_again=sees_again,
+        guide=NO_GUIDE if guide is None else guide,
+        guidance=0.0 if guide is None else parameters.guidance,
         start=start,
         reward_seen=parameters.reward_seen,
         cost_step=parameters.cost_step,
@@ -84,7 +99,9 @@ def _begin(model: SearchModel, particle: int, simulation: int, state: State) -> 
     state[POSE] = model.start
     state[SIMULATION] = simulation
     for sight in range(model.seers_start[particle], model.seers_start[particle + 1]):
-        model.last_seer[model.seers[sight]] = simulation
+        seer = model.seers[sight]
+        if model.sees_again or model.last_visit[seer] != ALWAYS:
+            model.last_seer[seer] = simulation
 
 
 def _is_legal(model: SearchModel, state: State, action: int) -> bool:
@@ -96,10 +113,19 @@ def _step(model: SearchModel, state: State, action: int, rng: Stream) -> tuple[i
 
 
 def _rollout_step(model: SearchModel, state: State, actions: int, rng: Stream) -> tuple[float, bool]:
-    """A way out drawn from a list: two loads, where asking every action whether it is legal takes eight."""
+    """Towards the first goal of the guide that the simulation has not been to yet, or any way out.
+
+    Drawn from a list of ways: two loads, where asking every action whether it is legal takes eight.
+    """
     pose = state[POSE]
     if model.way_count[pose] == 0:
         return 0.0, True
+    if model.guidance > 0.0 and uniform(rng) < model.guidance:
+        for number in range(len(model.guide.goals)):
+            after = model.guide.towards[number, pose]
+            if after != NOWHERE and model.last_visit[model.guide.goals[number]] != state[SIMULATION]:
+                _, reward, ended = _arrive(model, state, after)
+                return reward, ended
     _, reward, ended = _arrive(model, state, model.ways[pose, below(rng, model.way_count[pose])])
     return reward, ended
 

@@ -1,6 +1,8 @@
 """One search as the robot and the person know it: metres, names and records around a `Search`."""
 
+import contextlib
 import time
+from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,7 +59,7 @@ class SearchSession:
         self._search = Search(space=space, parameters=parameters, rng=rng, clock=clock)
         self._robot: Pose2D | None = None
         self._stop_message: str | None = None
-        self._new_space: SearchSpace | None = None
+        self._new_space: deque[SearchSpace] = deque(maxlen=1)  # filled by another thread than emptied
         self._state = SearchState(
             phase=SearchPhase.SEARCHING, target=target, episode=episode, max_steps=parameters.max_steps
         )
@@ -82,10 +84,7 @@ class SearchSession:
         """
         if self.ended:
             return NextStep(state=self.state)
-        new_space, self._new_space = self._new_space, None
-        if new_space is not None:
-            self._space = new_space
-            self._search.move_to(new_space)
+        self._take_new_space()
         check_cloud(self._space, cloud)
         pose = self._space.graph.nearest(robot)
         step = self._search.look(pose, self._space.visible(robot), cloud.probability)
@@ -96,16 +95,22 @@ class SearchSession:
         """The last goal cannot be reached: close the way to it for the rest of this search, and go on."""
         if not self.ended:
             self._search.close_way()
+            self._take_new_space()
         return self.observe(robot, cloud)
 
     def move_to(self, space: SearchSpace) -> None:
         """Go on in `space`, whose map has grown or changed, from the next observation on."""
-        self._new_space = space
+        self._new_space.append(space)
 
     def stop(self, message: str = "stopped") -> SearchState:
         """End the search as it stands, also while a decision is being made."""
         self._stop_message = message
         return self.state
+
+    def _take_new_space(self) -> None:
+        with contextlib.suppress(IndexError):  # there is none
+            self._space = self._new_space.pop()
+            self._search.move_to(self._space)
 
     def _told(self, robot: Pose2D, step: Step) -> NextStep:
         """`step` in the words of the graph."""
@@ -145,7 +150,7 @@ class SearchSession:
 
     def _decision(self, step: Step, poses: tuple[Pose2D, ...], reason: str) -> Decision:
         choice, here, goal = step.choice, poses[0], poses[1]
-        legal = legal_actions(self._space.graph, step.path[0]) if choice is not None else ()
+        legal = legal_actions(self._search.graph, step.path[0]) if choice is not None else ()
         return Decision(
             episode=self._state.episode,
             step=self._state.step,
@@ -155,7 +160,7 @@ class SearchSession:
             values=tuple(float(choice.values[option]) for option in legal) if choice is not None else (),
             visits=tuple(int(choice.visits[option]) for option in legal) if choice is not None else (),
             simulations=choice.simulations if choice is not None else 0,
-            elapsed_ms=choice.elapsed_ms if choice is not None else 0.0,
+            elapsed_ms=step.elapsed_ms,
             p_in_view=self._search.ending.p_in_view(step.sight),
             tau=self._search.ending.threshold,
             entropy=step.sight.normalised_entropy(),

@@ -27,7 +27,8 @@ def policy_of(space: SearchSpace, parameters: PlannerParameters, clock: Clock = 
 
     def pomp_with_belief() -> Policy:
         particles = BelievedCandidates(space.observability.seen_from_somewhere())
-        return Pomp(space, particles, parameters, clock)
+        guided = parameters.variant == "pomp_guided"
+        return Pomp(space, particles, parameters, clock, sees_again=False, guided=guided)
 
     makers: dict[str, Callable[[], Policy]] = {
         "random": RandomWalk,
@@ -38,6 +39,7 @@ def policy_of(space: SearchSpace, parameters: PlannerParameters, clock: Clock = 
         "pomp_pd": pomp_with_filter,
         "pomp_be_pd": pomp_with_pp,
         "pomp_belief": pomp_with_belief,
+        "pomp_guided": pomp_with_belief,
         "lookahead": lambda: Lookahead(space, parameters, clock),
     }
     if parameters.variant not in makers:
