@@ -35,7 +35,7 @@ pip_install = $(BIN)/python -m pip install --quiet --disable-pip-version-check -
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: demo test check docs clean help
+.PHONY: demo test bench check docs clean help
 
 demo: $(RUN_READY) ## run a search in a simulated home; ARGS="--scenario follow --user human"
 	$(call say,Starting the demo)
@@ -44,6 +44,9 @@ demo: $(RUN_READY) ## run a search in a simulated home; ARGS="--scenario follow 
 test: $(DEV_READY) ## run the tests; ARGS="-m slow" or ARGS="tests/belief -k entropy"
 	$(call say,Running the tests)
 	@$(BIN)/python -m pytest $(ARGS)
+
+bench: $(RUN_READY) ## compare the planners on scenes made by seed; ARGS="--suite hard-noisy --episodes 200"
+	@$(BIN)/robustnav bench search $(or $(ARGS),--episodes 40)
 
 check: $(DEV_READY) ## lint, format, types, and that the generated tables agree with the code
 	$(call say,Checking the style with ruff)

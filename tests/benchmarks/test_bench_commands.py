@@ -11,7 +11,7 @@ from robustnav_nodes.benchmarks import pomdp_returns
 from robustnav_nodes.benchmarks.bench_commands import bench_app
 from robustnav_nodes.benchmarks.pomdp_returns import MeanReturn
 from robustnav_nodes.benchmarks.report_file import write_report
-from robustnav_nodes.benchmarks.search_bench import SearchRow
+from robustnav_nodes.benchmarks.search_bench import Gain, SearchRow
 
 EASY = ("search", "--suite", "easy-noisy", "--episodes", "12", "--planners", "random,greedy,lookahead")
 HERE = ("--workers", "1")
@@ -60,7 +60,11 @@ def test_the_report_is_as_written_down_and_the_number_of_processes_changes_nothi
     assert report.keys() >= {"version", "commit", "settings"}
     assert [row["planner"] for row in report["rows"]] == ["random", "greedy", "lookahead"]
     assert all(row.keys() == set(SearchRow.__slots__) for row in report["rows"])
-    assert report["rows"][2]["decision_ms_p95"] > report["rows"][2]["decision_ms_p50"] > 0.0
+    assert all(row["decision_ms_p95"] >= row["decision_ms_p50"] > 0.0 for row in report["rows"])
+    (gain,) = report["gains"]
+    assert gain.keys() == set(Gain.__slots__)
+    assert (gain["over"], gain["difficulty"], gain["detector"]) == ("greedy", "easy", "noisy")
+    assert report["settings"]["destination_m"] == 0.5
     for words in ("easy, noisy detector", "12 episodes", "thesis, AVDB: other data", "lookahead over greedy"):
         assert words in shown, shown
     assert max(len(line) for line in shown.splitlines()) <= 80

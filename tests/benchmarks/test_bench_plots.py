@@ -61,7 +61,9 @@ def test_spl_is_drawn_for_as_many_difficulties_as_there_are(tmp_path, difficulti
             detector=detector,
             scene="a",
             number=number,
-            result=EpisodeResult(outcome=Outcome.SUCCESS, steps=20, shortest=3 + number, decision_ms=()),
+            result=EpisodeResult(
+                outcome=Outcome.SUCCESS, steps=20, shortest=3 + number, is_wrong_stop=False, decision_ms=()
+            ),
         )
         for difficulty in difficulties
         for detector in ("perfect", "noisy")

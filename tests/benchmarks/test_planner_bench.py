@@ -34,6 +34,7 @@ def test_a_row_for_each_size_as_it_is_measured():
     assert [row.poses < 200 for row in rows] == [True, False]
     for row in rows:
         assert 0.0 < row.decision_ms_p50 <= row.decision_ms_p95
+        assert row.lookahead_ms_p50 > 0.0
         assert row.simulated_steps_per_s > row.simulations_per_s > 0.0
         assert row.belief_update_ms > 0.0
         assert row.search_space_s > 0.0
@@ -46,6 +47,7 @@ def test_growth_is_drawn(tmp_path):
         "simulated_steps_per_s": 1.0,
         "decision_ms_p50": 1.0,
         "decision_ms_p95": 2.0,
+        "lookahead_ms_p50": 5.0,
         "belief_update_ms": 0.1,
         "search_space_s": 1.0,
         "rss_mb": 200.0,

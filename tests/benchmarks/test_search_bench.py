@@ -18,7 +18,14 @@ from robustnav_nodes.benchmarks.contestants import ALL, DEFAULT, NAMES, contesta
 from robustnav_nodes.benchmarks.export_pomp import TARGET_ID, export_pomp
 from robustnav_nodes.benchmarks.graph_bench import GraphEpisode
 from robustnav_nodes.benchmarks.scene_file import write_scene
-from robustnav_nodes.benchmarks.search_bench import as_json, gains, row_of, search_rows, settings_of
+from robustnav_nodes.benchmarks.search_bench import (
+    REFERENCES,
+    as_json,
+    gains,
+    row_of,
+    search_rows,
+    settings_of,
+)
 from robustnav_nodes.benchmarks.search_episode import EpisodeResult, Outcome
 from robustnav_nodes.benchmarks.search_plan import (
     PlayedEpisode,
@@ -44,8 +51,17 @@ def chosen(*names, dock=False):
     return contestants(names or QUICK, dock=dock, simulations=64)
 
 
-def result(outcome, steps=10, shortest=5, decision_ms=(1.0, 3.0)):
-    return EpisodeResult(outcome=outcome, steps=steps, shortest=shortest, decision_ms=decision_ms)
+def result(outcome, steps=10, shortest=5, decision_ms=(1.0, 3.0), is_wrong_stop=None):
+    """is_wrong_stop: None: as the outcome is defined where nothing is docked to."""
+    if is_wrong_stop is None:
+        is_wrong_stop = outcome is Outcome.LOCALISATION_ERROR
+    return EpisodeResult(
+        outcome=outcome,
+        steps=steps,
+        shortest=shortest,
+        is_wrong_stop=is_wrong_stop,
+        decision_ms=decision_ms,
+    )
 
 
 def episode(planner, outcome, number=0, difficulty="easy", detector="noisy", **more):
@@ -84,6 +100,11 @@ class TestContestants:
         for contestant in chosen("pomp", "pomp_be", "pomp_pd", "pomp_be_pd", "greedy"):
             assert contestant.settings()["belief"] == {"evidence": "f1", "detection_floor": 1e-3}
             assert contestant.planner.ending == "variant"
+
+    def test_all_dock_at_the_nearest_pose(self):
+        for contestant in chosen(*NAMES, dock=True):
+            assert contestant.settings()["planner"]["docking_distance_m"] == 0.1
+            assert contestant.planner.dock
 
     def test_lookahead_plans_with_the_recall_of_the_detector(self):
         (contestant,) = chosen("lookahead")
@@ -270,9 +291,27 @@ class TestRows:
 
     def test_without_success_there_is_no_path_length(self):
         row = row_of(
-            "a", "b", "c", outcomes=[Outcome.OTHER_ERROR], spl=np.zeros(1), steps=[200], decision_ms=[]
+            "a",
+            "b",
+            "c",
+            outcomes=[Outcome.OTHER_ERROR],
+            spl=np.zeros(1),
+            steps=[200],
+            wrong_stops=[False],
+            decision_ms=[],
         )
         assert (row.apl, row.sr_ci, row.decision_ms_p95) == (None, (0.0, 0.0), 0.0)
+
+    def test_a_wrong_stop_is_counted_apart_from_what_was_wrong_before_it(self):
+        """Docked to a false alarm, with the target in view there; and found, then docked out of sight."""
+        played = [
+            episode("greedy", Outcome.LOCALISATION_ERROR, 0, is_wrong_stop=False),
+            episode("greedy", Outcome.DOCKING_ERROR, 1, is_wrong_stop=True),
+            episode("greedy", Outcome.DOCKING_ERROR, 2, is_wrong_stop=False),
+            episode("greedy", Outcome.SUCCESS, 3),
+        ]
+        (row,) = search_rows(played, ["greedy"])
+        assert (row.wrong_stop, row.localisation_error, row.docking_error) == (0.25, 0.25, 0.5)
 
     def test_cells_stand_in_the_order_of_the_suites(self):
         played = [
@@ -287,18 +326,28 @@ class TestRows:
         ]
 
     def test_gain_is_over_the_same_episodes(self):
-        """The default is twice as good in each, whatever the episode."""
+        """The default is twice as good as one and four times as good as another, whatever the episode."""
         played = []
         for number in range(20):
+            steps = number + 5
             played += [
-                episode(DEFAULT, Outcome.SUCCESS, number, steps=number + 5, shortest=5),
-                episode("greedy", Outcome.SUCCESS, number, steps=2 * number + 10, shortest=5),
+                episode(DEFAULT, Outcome.SUCCESS, number, steps=steps, shortest=5),
+                episode("greedy_gain", Outcome.SUCCESS, number, steps=2 * steps, shortest=5),
+                episode("greedy", Outcome.SUCCESS, number, steps=4 * steps, shortest=5),
+                episode("pomp", Outcome.SUCCESS, number, steps=steps, shortest=5),  # no reference
             ]
-        (gain,) = gains(played[::-1])
-        assert gain.spl_ratio == pytest.approx(2.0)
-        assert gain.spl_ratio_ci == pytest.approx((2.0, 2.0))
-        assert gain.sr_difference_ci == (0.0, 0.0)
+        found = gains(played[::-1])
+        assert [gain.over for gain in found] == ["greedy", "greedy_gain"]  # greedy_likelihood did not play
+        for gain, ratio in zip(found, (4.0, 2.0), strict=True):
+            assert gain.spl_ratio == pytest.approx(ratio)
+            assert gain.spl_ratio_ci == pytest.approx((ratio, ratio))
+            assert gain.sr_difference_ci == (0.0, 0.0)
         assert gains([one for one in played if one.planner == DEFAULT]) == []
+        assert gains([one for one in played if one.planner != DEFAULT]) == []
+
+    def test_the_references_are_the_rules_that_play(self):
+        assert REFERENCES == ("greedy", "greedy_likelihood", "greedy_gain")
+        assert set(REFERENCES) <= set(NAMES)
 
     def test_a_gain_over_nothing_is_unknown(self):
         (gain,) = gains([episode(DEFAULT, Outcome.SUCCESS), episode("greedy", Outcome.OTHER_ERROR)])

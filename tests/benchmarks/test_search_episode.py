@@ -1,5 +1,6 @@
 """Episodes in scenes made by hand: a row of poses, and a detector whose every word is written down."""
 
+import dataclasses
 import multiprocessing
 import multiprocessing.resource_tracker
 from collections.abc import Iterator
@@ -10,10 +11,13 @@ import pytest
 
 from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.benchmarks.contestants import NEAREST_M, contestants
+from robustnav_nodes.benchmarks.recorded_belief import RecordedBelief
 from robustnav_nodes.benchmarks.search_episode import BeliefMoment, EpisodeResult, Outcome, run_episode
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
 from robustnav_nodes.benchmarks.search_suite import NOISY, PERFECT, make_scene, starts_of
 from robustnav_nodes.planner.parameters import VARIANTS, PlannerParameters
+from robustnav_nodes.planner.search import Search
 from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability
 from robustnav_nodes.search_space.pose_graph import NOWHERE, PoseGraph
@@ -116,7 +120,9 @@ def test_c13_a_target_in_view_at_the_start_costs_no_step():
     ],
 )
 def test_spl_by_hand(outcome, steps, shortest, spl):
-    result = EpisodeResult(outcome=outcome, steps=steps, shortest=shortest, decision_ms=())
+    result = EpisodeResult(
+        outcome=outcome, steps=steps, shortest=shortest, is_wrong_stop=False, decision_ms=()
+    )
     assert result.spl == spl
     assert result.is_success == (outcome is Outcome.SUCCESS)
 
@@ -149,6 +155,81 @@ def test_stopping_at_another_pose_than_one_that_counts_is_a_docking_error():
 def test_a_false_alarm_that_is_docked_to_is_a_localisation_error():
     scene = row_scene([[], [2], [2], [], [6]], target=6, fires={1: 2, 2: 2}, destination=[4])
     assert run(scene, 0, dock=True).outcome is Outcome.LOCALISATION_ERROR
+
+
+# Candidate 2 is at the dock 2, candidate 6 at the dock 6; poses 1 and 2 see both, or not, as the test has it.
+DOCKED_OUT_OF_SIGHT = [[], [2, 6], [2], [], [], [], [6]]
+DOCKED_IN_SIGHT = [[], [2], [2, 6], [], [], [], [6]]
+
+
+def errors(scene, **changes) -> tuple[Outcome, bool]:
+    result = run(scene, 0, dock=True, **changes)
+    return result.outcome, result.is_wrong_stop
+
+
+@pytest.mark.parametrize(
+    ("sees", "ends", "expected"),
+    [
+        pytest.param(
+            [[], [2], [2], [], [], [], [6]],
+            [6],
+            (Outcome.LOCALISATION_ERROR, True),
+            id="a false alarm, docked to out of sight of the target",
+        ),
+        pytest.param(
+            DOCKED_IN_SIGHT,
+            [6],
+            (Outcome.LOCALISATION_ERROR, False),
+            id="a false alarm whose dock sees the target, though not as it should",
+        ),
+        pytest.param(
+            DOCKED_IN_SIGHT,
+            [2, 6],
+            (Outcome.SUCCESS, False),
+            id="a false alarm whose dock counts",
+        ),
+        pytest.param(
+            DOCKED_OUT_OF_SIGHT,
+            [6],
+            (Outcome.DOCKING_ERROR, True),
+            id="found in view, then docked elsewhere",
+        ),
+        pytest.param(
+            [[], [2, 6], [2, 6], [], [], [], [6]],
+            [6],
+            (Outcome.DOCKING_ERROR, False),
+            id="found in view, then docked to where it is still in view but does not count",
+        ),
+    ],
+)
+def test_three_ways_to_stop_at_the_wrong_place_by_hand(sees, ends, expected):
+    """The detector fires at candidate 2 from poses 1 and 2; the target is candidate 6."""
+    scene = row_scene(sees, target=6, fires={1: 2, 2: 2}, destination=ends)
+    assert errors(scene) == expected
+
+
+def test_found_where_it_would_dock_is_told_by_what_is_in_view_there():
+    """No step of a docking is left to take: the find is where it stops, with the target in view or not."""
+    sees = [[], [], [], [3], [3]]
+    in_view = row_scene(sees, target=3, fires={3: 3}, destination=[4])
+    assert errors(in_view) == (Outcome.DOCKING_ERROR, False)
+    false_alarm = row_scene([[], [], [], [3], [6]], target=6, fires={3: 3}, destination=[4])
+    assert errors(false_alarm) == (Outcome.LOCALISATION_ERROR, True)
+
+
+def test_a_rejected_docking_does_not_count_where_another_find_ends_it():
+    """At 1, the target (6) in view, it goes for 2 and finds nothing there; at 3 a false alarm ends it."""
+    sees = [[], [2, 6], [2], [3], [6]]
+    scene = row_scene(sees, target=6, fires={1: 2, 3: 3}, destination=[4], candidates=40)
+    moments: list[BeliefMoment] = []
+    result = run(scene, 0, moments, dock=True, p_found=0.7)
+    assert [moment.pose for moment in moments] == [0, 1, 2, 3]
+    assert (result.outcome, result.is_wrong_stop) == (Outcome.LOCALISATION_ERROR, True)
+
+
+def test_not_found_is_no_wrong_stop():
+    scene = row_scene([[0, 1], [], [], [], [6]], target=6, fires={})
+    assert errors(scene) == (Outcome.OTHER_ERROR, False)
 
 
 @pytest.mark.parametrize("changes", [{"max_steps": 2}, {"max_steps": 50}])
@@ -199,7 +280,8 @@ def episode(scene: SearchScene, number: int, variant: str, detector: str = NOISY
     target = scene.targets[number]
     start = int(np.random.default_rng(number).choice(starts_of(scene, target)))
     thesis = variant in ("pomp", "pomp_be", "pomp_pd", "pomp_be_pd")
-    parameters = PlannerParameters(variant=variant, simulations=32, time_budget_s=60.0, **changes)
+    quick = {"simulations": 32, "time_budget_s": 60.0, "docking_distance_m": NEAREST_M}
+    parameters = PlannerParameters(variant=variant, **(quick | changes))
     belief = BeliefParameters(evidence="f1" if thesis else "likelihood")
     return scene, target, detector, start, parameters, belief, np.random.default_rng(number)
 
@@ -211,6 +293,48 @@ def test_with_a_perfect_detector_ours_always_succeeds_in_an_easy_scene(easy, see
     assert result.spl > 0.1
     docked = run_episode(*episode(easy[seed], number, "lookahead", PERFECT))
     assert docked.outcome is Outcome.SUCCESS
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_every_decision_takes_time(easy, variant):
+    """Also of the rules that do not look at a clock; docking decides nothing."""
+    result = run_episode(*episode(easy[0], 4, variant, max_steps=40))
+    assert 0 < len(result.decision_ms) <= result.steps
+    assert min(result.decision_ms) > 0.0
+
+
+@pytest.mark.parametrize("name", ["greedy_likelihood", "lookahead", "pomp_be_pd_likelihood"])
+def test_few_finds_are_rejected_at_the_dock_and_none_without_news(easy, name):
+    """In noisy episodes: a search does not wear itself out between docks."""
+    (contestant,) = contestants([name], dock=True, simulations=32)
+    parameters = dataclasses.replace(contestant.planner, confirm_at_dock=True)
+    rejections = []
+    for scene in easy.values():
+        for number, target in enumerate(scene.targets):
+            start = int(np.random.default_rng(number).choice(starts_of(scene, target)))
+            rejections.append(rejections_in(scene, target, start, parameters, contestant.belief))
+    assert sum(rejections) > 10
+    assert max(rejections) <= 6
+
+
+def rejections_in(scene: SearchScene, target: SearchTarget, start: int, planner, beliefs) -> int:
+    """How often a find is rejected at its dock in one episode."""
+    belief = RecordedBelief(scene.space, target.detections[NOISY], beliefs)
+    search = Search(space=scene.space, parameters=planner, rng=np.random.default_rng(start))
+    pose, rejected, looked = start, [], set()
+    when_begun = 0
+    while True:
+        looked.add(pose)
+        belief.look(pose)
+        step = search.look(pose, scene.space.observability.row(pose), belief.probability)
+        if step.message.startswith("looked again, not there"):
+            assert len(looked) > when_begun  # something was seen since the docking began
+            rejected.append(pose)
+        if step.begins_docking:
+            when_begun = len(looked)
+        if not step.path:
+            return len(rejected)
+        pose = step.path[1]
 
 
 def course_of(arguments: tuple) -> tuple:

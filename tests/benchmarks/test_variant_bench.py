@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.benchmarks import variant_bench, variant_parts
 from robustnav_nodes.benchmarks.rooms import rooms_of
-from robustnav_nodes.benchmarks.search_episode import BeliefMoment, Outcome, run_episode
+from robustnav_nodes.benchmarks.search_episode import Outcome, run_episode
 from robustnav_nodes.benchmarks.search_scene import SearchScene
 from robustnav_nodes.benchmarks.search_suite import NOISY, PERFECT, make_scene, starts_of
 from robustnav_nodes.benchmarks.tour_episode import run_at_once, run_one_after_another
@@ -64,13 +64,10 @@ def test_a_prior_on_the_right_place_leads_straight_there(easy):
         target = easy.targets[number]
         start = int(starts_of(easy, target)[0])
         record = target.detections[PERFECT]
-        prior = np.zeros(len(easy.space.candidates))
-        prior[record.candidate[np.argmax(record.weight)]] = 1.0
-        moments: list[BeliefMoment] = []
+        prior = np.full(len(easy.space.candidates), 0.1 / len(easy.space.candidates))
+        prior[record.candidate[np.argmax(record.weight)]] += 0.9
         rng = np.random.default_rng(0)
-        result = run_episode(
-            easy, target, PERFECT, start, QUICK, BeliefParameters(), rng, moments, prior=prior
-        )
+        result = run_episode(easy, target, PERFECT, start, QUICK, BeliefParameters(), rng, prior=prior)
         assert result.outcome is Outcome.SUCCESS
         assert result.spl == 1.0
 

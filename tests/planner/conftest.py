@@ -192,9 +192,13 @@ def situation_at(
     *,
     looked: Iterable[int] = (),
     step: int = 0,
+    start: int | None = None,
     graph: PoseGraph | None = None,
 ) -> Situation:
-    """Where a decision is made: at `pose`, after looks from there and from `looked`, none of them a find."""
+    """Where a decision is made: at `pose`, after looks from there and from `looked`, none of them a find.
+
+    start: where the search began; None: at `pose`.
+    """
     return Situation(
         graph=space.graph if graph is None else graph,
         sight=Sight(
@@ -206,6 +210,7 @@ def situation_at(
         ),
         visited=np.isin(np.arange(len(space.graph)), [pose, *looked]),
         step=step,
+        start=pose if start is None else start,
     )
 
 

@@ -45,11 +45,23 @@ def test_greedy_does_not_go_for_what_it_has_seen(by_hand, situation):
     assert policy.decide(situation(space, 1, [0.4, 0.4, 0.2]), RNG).action == Action.FORWARD
 
 
-def test_greedy_looks_again_where_the_detector_fired(by_hand, situation):
+@pytest.mark.parametrize(("rose", "action"), [([1], Action.BACKWARD), ([], Action.FORWARD)])
+def test_greedy_looks_again_where_the_detector_fired(by_hand, situation, rose, action):
+    """From elsewhere: the second pose sees it, too."""
+    space = by_hand.corridor([0, 1], [1], [], [], [2])
+    policy = Greedy(space)
+    policy.looked(look_at(space, 0, rose))
+    assert policy.decide(situation(space, 2, [0.4, 0.4, 0.2]), RNG).action == action
+
+
+def test_greedy_does_not_go_again_to_where_it_has_been_in_this_tour(by_hand, situation):
+    """The false alarm is seen from nowhere else: it is no reason to go back, until all else was seen."""
     space = by_hand.corridor([0, 1], [], [], [2])
     policy = Greedy(space)
     policy.looked(look_at(space, 0, rose=[1]))
-    assert policy.decide(situation(space, 1, [0.4, 0.4, 0.2]), RNG).action == Action.BACKWARD
+    assert policy.decide(situation(space, 1, [0.4, 0.4, 0.2]), RNG).action == Action.FORWARD
+    policy.looked(look_at(space, 3))
+    assert policy.decide(situation(space, 3, [0.4, 0.4, 0.2]), RNG).action == Action.BACKWARD
 
 
 def test_greedy_begins_again_when_everything_was_seen(by_hand, situation):

@@ -72,7 +72,9 @@ def test_same_history_same_decisions_and_only_legal_ones(by_hand, parameters_wit
         policy = Lookahead(space, parameters_with(worth=worth), clock=lambda: 0.0)
         poses = [0]
         while len(poses) < 30:
-            here = situation(space, poses[-1], believed(space, seed), looked=poses, step=len(poses))
+            here = situation(
+                space, poses[-1], believed(space, seed), looked=poses, step=len(poses) - 1, start=0
+            )
             choice = policy.decide(here, RNG)
             if choice is None:
                 break
@@ -186,7 +188,7 @@ def test_in_a_home_it_looks_at_everything_without_delay(home, parameters_with, s
     poses, seen = [0], home.observability.row(0)
     while not np.array_equal(seen, can_be_seen):
         belief = np.where(seen, 1e-9, 1.0)
-        here = situation(home, poses[-1], belief / belief.sum(), looked=poses, step=len(poses) - 1)
+        here = situation(home, poses[-1], belief / belief.sum(), looked=poses, step=len(poses) - 1, start=0)
         choice = policy.decide(here, RNG)
         poses.append(int(home.graph.successors[poses[-1], choice.action]))
         seen = seen | home.observability.row(poses[-1])

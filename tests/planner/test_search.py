@@ -155,6 +155,93 @@ def test_rising_means_rising_in_view_since_the_last_look(search_in, space):
     assert (again.sight.rose.tolist(), again.sight.is_new) == ([False, False], False)
 
 
+AFAR = [[3, 4], [2, 3, 4], [], [3], [4]]  # 3 and 4 are seen together from afar, each alone from its dock
+BOTH = [0.01, 0.01, 0.02, 0.50, 0.46]
+
+
+def dock_to(search, space, at_dock, on_the_way=BOTH):
+    """Found from afar with `BOTH`, then to the dock: the first step, and that after the look there."""
+    first = look(search, space, 0, BOTH)
+    assert (first.phase, first.location, first.path) == (SearchPhase.DOCKING, 3, (0, 1, 2, 3))
+    for pose in (1, 2):
+        step = look(search, space, pose, on_the_way)
+        assert (step.phase, step.path[-1]) == (SearchPhase.DOCKING, 3)
+    return look(search, space, 3, at_dock)
+
+
+@pytest.mark.parametrize("variant", ["lookahead", "pomp_be_pd", "pomp"])
+def test_a_dock_from_which_less_is_in_view_does_not_take_a_find_back(search_in, by_hand, variant):
+    """0.96 in view from afar, 0.50 at the dock, and nothing new."""
+    space = by_hand.corridor(*AFAR)
+    step = dock_to(search_in(space, variant=variant), space, BOTH)
+    assert (step.phase, step.location, step.path) == (SearchPhase.FOUND, 3, ())
+
+
+@pytest.mark.parametrize("variant", ["lookahead", "pomp_be_pd"])
+def test_what_is_seen_on_the_way_is_judged_at_the_dock(search_in, by_hand, variant):
+    """It goes on though the belief falls; there it is judged."""
+    space = by_hand.corridor(*AFAR)
+    step = dock_to(search_in(space, variant=variant), space, [0.2] * 5, on_the_way=[0.2] * 5)
+    assert step.phase is SearchPhase.SEARCHING
+
+
+@pytest.mark.parametrize("variant", ["lookahead", "pomp_be_pd"])
+def test_a_silent_look_at_the_dock_takes_a_find_back(search_in, by_hand, variant):
+    """And with nothing new it never docks there again."""
+    space = by_hand.corridor(*AFAR, [0], [1])
+    parameters = {"p_found": 0.96, "tau_max": 0.46, "max_steps": 40}
+    search, lower = search_in(space, variant=variant, **parameters), [0.04, 0.02, 0.04, 0.45, 0.45]
+    step = dock_to(search, space, lower)
+    assert step.phase is SearchPhase.SEARCHING
+    assert step.message.startswith("looked again, not there")
+    phases = set()
+    while step.path:
+        step = look(search, space, step.path[1], lower)
+        phases.add(step.phase)
+    assert phases == {SearchPhase.SEARCHING, SearchPhase.NOT_FOUND}
+
+
+def test_what_was_rejected_is_not_rejected_again_without_news(search_in, by_hand):
+    """From 1 more is in view, enough for a find: at its dock, where it has looked, nothing changes."""
+    space = by_hand.corridor(*AFAR)
+    search, lower = search_in(space), [0.01, 0.01, 0.08, 0.45, 0.45]
+    assert dock_to(search, space, lower).phase is SearchPhase.SEARCHING
+    step = look(search, space, 1, lower)
+    assert (step.phase, step.location, step.begins_docking) == (SearchPhase.DOCKING, 3, True)
+    while step.path:
+        step = look(search, space, step.path[1], lower)
+    assert (step.phase, step.location) == (SearchPhase.FOUND, 3)
+
+
+def test_at_the_dock_it_may_prove_to_be_beside_it(search_in, by_hand):
+    """The silent look leaves the other place of those that were in view: it docks on to that one."""
+    space = by_hand.corridor(*AFAR)
+    search, beside = search_in(space, variant="pomp_be_pd"), [0.01, 0.01, 0.02, 0.10, 0.86]
+    step = dock_to(search, space, beside)
+    assert (step.phase, step.location, step.path) == (SearchPhase.DOCKING, 4, (3, 4))
+    assert step.begins_docking
+    assert look(search, space, 4, beside).phase is SearchPhase.FOUND
+
+
+def test_a_first_detection_is_not_taken_back(search_in, by_hand):
+    """It ends the search, as the thesis has it; what is not seen at the dock changes nothing."""
+    space = by_hand.corridor(*AFAR)
+    step = dock_to(search_in(space, variant="pomp"), space, [0.3, 0.3, 0.3, 0.05, 0.05])
+    assert (step.phase, step.location) == (SearchPhase.FOUND, 3)
+
+
+def test_with_the_way_back_closed_what_is_ahead_is_looked_at_also_on_a_new_map(search_in, by_hand):
+    """Where the search began cannot be reached any more: that makes nothing ahead worthless."""
+    space = by_hand.corridor([0], [], [], [1], [2])
+    search = search_in(space)
+    assert look(search, space, 1, [0.1, 0.5, 0.4]).path == (1, 2)
+    assert look(search, space, 2, [0.8, 0.1, 0.1]).path == (2, 1)
+    search.close_way()
+    search.move_to(space)
+    step = look(search, space, 2, [0.8, 0.1, 0.1])
+    assert (step.phase, step.path) == (SearchPhase.SEARCHING, (2, 3))
+
+
 WALLED = ("##############", "#o...#...#...#", "#....#...#oo.#", "#....#...#...#", "##############")
 
 

@@ -1,5 +1,6 @@
 import itertools
 import math
+import threading
 
 import numpy as np
 import pytest
@@ -202,9 +203,17 @@ def test_probabilistic_variants_do_not(session_with, cloud_of, space, variant):
 def test_a_view_that_told_nothing_new_rules_nothing_out(session_with, cloud_of, space):
     """The belief did not change, for the robot had been there before: what it has in view stays in pp."""
     session = session_with(tau_max=0.9)
+    for _ in range(2):
+        session.observe(looking_at(space, 1, 1.8), cloud_of(0.4, 0.6))
+    assert session._search._policy._particles.not_ruled_out.tolist() == [True, True]
+
+
+def test_c6_a_silent_look_from_a_new_pose_rules_out_what_is_in_view(session_with, cloud_of, space):
+    """Also where the detector is so useless that its silence changes no belief."""
+    session = session_with(tau_max=0.9)
     session.observe(looking_at(space, 1, 1.8), cloud_of(0.4, 0.6))
     session.observe(looking_at(space, 1, 1.5), cloud_of(0.4, 0.6))
-    assert session._search._policy._particles.not_ruled_out.tolist() == [True, True]
+    assert session._search._policy._particles.not_ruled_out.tolist() == [True, False]
 
 
 def test_the_search_gives_up_after_its_steps(session_with, cloud_of):
@@ -263,6 +272,77 @@ def test_stop_while_a_decision_is_made_wins(session_with, cloud_of, space, param
     step = session.observe(START, cloud_of(0.5, 0.5))
     assert step.goal is None
     assert (step.state.phase, step.state.message) == (SearchPhase.STOPPED, "enough")
+
+
+@pytest.mark.parametrize("maps", [1, 3])
+def test_a_map_that_comes_while_a_decision_is_made_is_not_lost(
+    space, space_of, cloud_of, parameters_with, maps
+):
+    """From another thread, each time that the clock is read in the decision; the last one counts."""
+    grown = space_of(*(row[:-1] + "...#" if set(row) != {"#"} else row + "###" for row in CORRIDOR))
+    other = space_of("######", "#o.oo#", "#....#", "######")
+    assert len(grown.graph) > len(space.graph)
+    assert len(grown.candidates) == 2
+    assert len(other.candidates) == 3
+    coming = []
+
+    def clock() -> float:
+        while coming:
+            caller = threading.Thread(target=session.move_to, args=(coming.pop(0),))
+            caller.start()
+            caller.join()
+        return 0.0
+
+    session = SearchSession(
+        target="mug",
+        space=space,
+        parameters=parameters_with(simulations=64),
+        rng=np.random.default_rng(0),
+        clock=clock,
+    )
+    first = session.observe(START, cloud_of(0.5, 0.5))
+    coming += [other] * (maps - 1) + [grown]
+    second = session.observe(
+        first.goal, cloud_of(0.5, 0.5)
+    )  # decided in the old map, while the new one comes
+    assert not coming
+    cloud = BeliefCloud(position_m=grown.candidates.position_m, probability=np.array([0.5, 0.5]), stamp_ns=9)
+    third = session.observe(second.goal, cloud)
+    assert (third.state.phase, third.state.step) == (SearchPhase.SEARCHING, 3)
+    assert session._search.graph is grown.graph
+    assert session.observe(third.goal, cloud).state.step == 4  # and it is taken once
+
+
+def test_a_map_that_comes_while_observations_are_taken_in_is_taken_at_the_next(
+    session_with, space_of, cloud_of, space
+):
+    """Another thread says it over and over, this one observes: whichever comes last is where it goes on."""
+    session, maps = session_with(variant="greedy"), [space_of(*CORRIDOR) for _ in range(2)]
+
+    def say() -> None:
+        for number in range(200):
+            session.move_to(maps[number % 2])
+
+    caller = threading.Thread(target=say)
+    caller.start()
+    robot = START
+    for _ in range(40):
+        robot = session.observe(robot, cloud_of(0.5, 0.5)).goal
+    caller.join()
+    session.observe(robot, cloud_of(0.5, 0.5))
+    assert session._search.graph is maps[1].graph
+
+
+def test_a_way_that_is_closed_stays_closed_in_a_map_that_comes_then(session_with, cloud_of, space, space_of):
+    """The map comes with the step that proves to be blocked: the way is closed in it, too."""
+    session = session_with(variant="lookahead")
+    first = session.observe(START, cloud_of(0.3, 0.7))
+    session.move_to(space_of(*CORRIDOR))
+    robot, step = START, session.blocked(START, cloud_of(0.3, 0.7))
+    while step.goal is not None:
+        assert {robot, step.goal} != {START, first.goal}
+        robot = step.goal
+        step = session.observe(robot, cloud_of(0.3, 0.7))
 
 
 def test_path_length_is_what_the_robot_drove(session_with, cloud_of):

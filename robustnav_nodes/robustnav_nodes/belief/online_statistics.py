@@ -3,6 +3,9 @@
 Statistics from a data sheet were measured on other images. Once a person or the gripper confirms where the
 target was, each look on the way says what the detector did with it: in view and detected, in view and
 missed, or fired at nothing.
+
+Precision is that of the looks of searches, and searches go where the target is: it comes out higher than
+over all poses (0.83 for 0.78 in the medium scenes), recall does not.
 """
 
 from collections.abc import Iterable

@@ -13,6 +13,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
+from robustnav_nodes.benchmarks.variant_command import variants_command
 
 if TYPE_CHECKING:
     from robustnav_nodes.benchmarks.contestants import Contestant
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from robustnav_nodes.benchmarks.search_plan import PlayedEpisode, SceneJob
 
 bench_app = typer.Typer(help="Measure the planners.", no_args_is_help=True)
+bench_app.command("variants")(variants_command)
 
 JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file too")]
 MAX_SEED = 2**31 - 1
@@ -118,14 +120,15 @@ def planner_command(
     wanted = _sizes(sizes)
     check_writable(json_file, plot)
     console = _console()
-    console.print("[dim]  poses candidates   sim/s steps/s  decision ms, 95 %  belief ms space s   MB[/]")
+    console.print("[dim]  poses candidates   sim/s steps/s  POMCP ms, 95 % lookahead  belief space s   MB[/]")
     rows = planner_rows(
         wanted,
         seed,
         lambda row: console.print(
             f"{row.poses:7d} {row.candidates:10d} {row.simulations_per_s:7.2g} "
             f"{row.simulated_steps_per_s:7.2g} {row.decision_ms_p50:10.2f} /{row.decision_ms_p95:6.2f} "
-            f"{row.belief_update_ms:10.3f} {row.search_space_s:7.2f} {row.rss_mb:4.0f}"
+            f"{row.lookahead_ms_p50:9.2f} {row.belief_update_ms:9.3f} {row.search_space_s:7.2f} "
+            f"{row.rss_mb:4.0f}"
         ),
     )
     if json_file is not None:

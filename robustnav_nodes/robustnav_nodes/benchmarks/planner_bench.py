@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +21,13 @@ from robustnav_nodes.belief.tracker import BeliefTracker
 from robustnav_nodes.belief.view_gate import Verdict
 from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.pomcp import plan
+from robustnav_nodes.planner.search import Search
 from robustnav_nodes.planner.search_problem import SEARCH, search_model
 from robustnav_nodes.search_space.space import SearchSpace
 
 SIZES = (100, 316, 1_000, 3_162, 10_000, 31_623, 100_000)
 DECISIONS = 60
+LOOKAHEADS = 20
 VIEWS = 60
 NO_TIME_LIMIT_S = 60.0
 
@@ -52,7 +54,8 @@ class PlannerRow:
     """One size of the search space, measured in a process of its own on one core.
 
     simulations_per_s, simulated_steps_per_s: of all decisions together, the model's making included;
-    decision_ms_p50, decision_ms_p95: one decision of 1024 simulations; belief_update_ms: median over views
+    decision_ms_p50, decision_ms_p95: one decision of POMCP, of 1024 simulations; lookahead_ms_p50: one of the
+    default planner; belief_update_ms: median over views
     that count and show no detection; search_space_s: building it, compilation not included; rss_mb: most
     memory that the process ever held, Python and its libraries included.
     """
@@ -63,6 +66,7 @@ class PlannerRow:
     simulated_steps_per_s: float
     decision_ms_p50: float
     decision_ms_p95: float
+    lookahead_ms_p50: float
     belief_update_ms: float
     search_space_s: float
     rss_mb: float
@@ -100,6 +104,7 @@ def planner_row(size: int, seed: int) -> PlannerRow:
         simulated_steps_per_s=steps / float(decision_s.sum()),
         decision_ms_p50=1000.0 * float(np.percentile(decision_s, 50)),
         decision_ms_p95=1000.0 * float(np.percentile(decision_s, 95)),
+        lookahead_ms_p50=float(np.median(_lookahead_ms(space, parameters, rng))),
         belief_update_ms=belief_update_ms,
         search_space_s=search_space_s,
         rss_mb=_peak_rss_mb(),
@@ -148,8 +153,9 @@ def draw_planner_rows(rows: Sequence[PlannerRow], png: Path) -> None:
     FigureCanvasAgg(figure)
     times, memory = figure.subplots(1, 2, width_ratios=(2, 1))
     poses = [row.poses for row in rows]
-    times.loglog(poses, [row.decision_ms_p50 for row in rows], "o-", label="decision, median")
-    times.loglog(poses, [row.decision_ms_p95 for row in rows], "^--", label="decision, 95 %")
+    times.loglog(poses, [row.decision_ms_p50 for row in rows], "o-", label="POMCP, median")
+    times.loglog(poses, [row.decision_ms_p95 for row in rows], "^--", label="POMCP, 95 %")
+    times.loglog(poses, [row.lookahead_ms_p50 for row in rows], "x-", label="lookahead")
     times.loglog(poses, [row.belief_update_ms for row in rows], "s-", label="belief update")
     times.loglog(poses, [1000.0 * row.search_space_s for row in rows], "d-", label="search space")
     times.set(xlabel="poses (about as many candidates)", ylabel="time, ms")
@@ -186,6 +192,20 @@ def _decisions(
             simulations += chosen.simulations
             steps += chosen.steps
     return seconds, simulations, steps
+
+
+def _lookahead_ms(space: SearchSpace, parameters: PlannerParameters, rng: np.random.Generator) -> list[float]:
+    """Milliseconds of each decision of a search that finds nothing."""
+    search = Search(space=space, parameters=replace(parameters, variant="lookahead"), rng=rng)
+    probability = np.full(len(space.candidates), 1.0 / len(space.candidates))
+    pose, elapsed_ms = int(rng.integers(len(space.graph))), []
+    for _ in range(LOOKAHEADS):
+        step = search.look(pose, space.observability.row(pose), probability)
+        if not step.path:
+            break
+        pose = step.path[1]
+        elapsed_ms.append(step.elapsed_ms)
+    return elapsed_ms
 
 
 def _belief_updates_s(space: SearchSpace, rng: np.random.Generator) -> list[float]:

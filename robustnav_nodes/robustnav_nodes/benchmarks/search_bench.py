@@ -24,7 +24,7 @@ REFERENCES = ("greedy", "greedy_likelihood", "greedy_gain")
 class SearchRow:
     """One planner in all episodes of one difficulty and detector.
 
-    Shares of all episodes: sr, wrong_stop and the three errors; wrong_stop is localisation_error: a stop
+    Shares of all episodes: sr, wrong_stop and the three errors; wrong_stop: a stop
     where the target is not in view. apl: mean steps of the successful episodes, None where there is none.
     The intervals hold 95 %.
     """

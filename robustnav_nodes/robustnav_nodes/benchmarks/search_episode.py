@@ -82,15 +82,17 @@ def run_episode(
     search = Search(space=space, parameters=planner, rng=rng, prior=belief.probability)
     counts = target.destination if planner.dock and target.destination is not None else target.in_view
     shortest = max(1, int(open_graph.steps_from(start)[counts].min()))
-    pose, decision_ms, was_in_view = start, [], False
+    pose, decision_ms, was_in_view, is_docking = start, [], False, False
     while True:
         in_view = space.observability.row(pose)
         belief.look(pose)
         if moments is not None:
             moments.append(BeliefMoment(pose=pose, probability=belief.probability))
         step = search.look(pose, in_view, belief.probability)
-        if step.begins_docking or not planner.dock:
-            was_in_view = bool(target.in_view[pose])  # the find that counts is the last one
+        begins = step.location is not None and (step.begins_docking or not is_docking)
+        if begins:  # the find that counts is the last one
+            was_in_view = bool(target.in_view[pose])
+        is_docking = step.location is not None
         if step.choice is not None:
             decision_ms.append(step.elapsed_ms)
         if not step.path:

@@ -79,7 +79,5 @@ def _share(value: float) -> str:
 
 
 def _ms(median: float, high: float) -> str:
-    """Median and 95 % of the decisions' times; "–" for a rule that does not time itself."""
-    return (
-        "–" if high == 0.0 else " / ".join(f"{ms:.1f}" if ms < 10.0 else f"{ms:.0f}" for ms in (median, high))
-    )
+    """Median and 95 % of the decisions' times."""
+    return " / ".join(f"{ms:.1f}" if ms < 10.0 else f"{ms:.0f}" for ms in (median, high))

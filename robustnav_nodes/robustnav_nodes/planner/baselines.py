@@ -44,14 +44,13 @@ class Greedy:
         self._been: Bool = np.zeros(len(space.graph), dtype=np.bool_)
 
     def looked(self, sight: Sight) -> None:
-        """See Policy; a candidate where the detector fired stays worth a look from elsewhere."""
-        self._been[sight.pose] = True
-        self._unseen = (self._unseen & ~sight.in_view) | (sight.in_view & sight.rose)
-        if not self._unseen.any():
-            self._begin_again()
+        """See Policy; a candidate where the detector fired is worth a look from elsewhere."""
+        self._unseen |= sight.in_view & sight.rose
 
     def decide(self, situation: Situation, rng: np.random.Generator) -> Choice | None:
         """See Policy."""
+        self._been[situation.pose] = True
+        self._unseen &= ~situation.sight.in_view | situation.sight.rose
         choice = self._towards_unseen(situation)
         if choice is None:  # what is left is seen from where it has been alone, or from nowhere in reach
             self._begin_again()

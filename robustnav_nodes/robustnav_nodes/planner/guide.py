@@ -12,7 +12,6 @@ from robustnav_nodes.planner.viewpoints import (
     best_viewpoint,
     empty_reach,
     look_from,
-    way_to,
 )
 from robustnav_nodes.search_space.compiled import compiled
 from robustnav_nodes.search_space.pose_graph import NOWHERE
@@ -42,21 +41,24 @@ def guide_from(place: Place, outlook: Outlook, start: int, most_goals: int) -> G
     reach = empty_reach(len(outlook.gain))
     pose = start
     goals: list[int] = []
+    towards: list[Int32] = []
     while len(goals) < most_goals:
         goal = best_viewpoint(place, outlook, reach, pose, float(outlook.gain.max()))
         if goal == NONE:
             break
-        for passed in way_to(reach, goal):
-            look_from(place, outlook, passed, 1.0)
         goals.append(goal)
-        pose = goal
-    chosen = np.array(goals, dtype=np.int32)
-    return Guide(goals=chosen, towards=ways_to(place.successors, chosen))
+        towards.append(ways_to(place.successors, goal))
+        while pose != goal:
+            pose = int(towards[-1][pose])
+            look_from(place, outlook, pose, 1.0)
+    if not goals:
+        return NO_GUIDE
+    return Guide(goals=np.array(goals, dtype=np.int32), towards=np.stack(towards))
 
 
 @compiled
-def ways_to(successors: Int32, goals: Int32) -> Int32:
-    """int32 [g, n]: from each of n poses the next one on a shortest way to each goal (see Guide)."""
+def ways_to(successors: Int32, goal: int) -> Int32:
+    """int32 [n]: from each of n poses the next one on a shortest way to `goal` (see Guide)."""
     poses, actions = successors.shape
     start = np.zeros(poses + 1, dtype=np.int64)  # the ways the other way round, sorted by where they lead
     for pose in range(poses):
@@ -74,18 +76,17 @@ def ways_to(successors: Int32, goals: Int32) -> Int32:
                 before[filled[after]] = pose
                 filled[after] += 1
 
-    towards = np.full((len(goals), poses), NOWHERE, dtype=np.int32)
+    towards = np.full(poses, NOWHERE, dtype=np.int32)
     queue = np.empty(poses, dtype=np.int32)
-    for number in range(len(goals)):
-        queue[0] = goals[number]
-        first, end = 0, 1
-        while first < end:
-            after = queue[first]
-            first += 1
-            for way in range(start[after], start[after + 1]):
-                pose = before[way]
-                if pose != goals[number] and towards[number, pose] == NOWHERE:
-                    towards[number, pose] = after
-                    queue[end] = pose
-                    end += 1
+    queue[0] = goal
+    first, end = 0, 1
+    while first < end:
+        after = queue[first]
+        first += 1
+        for way in range(start[after], start[after + 1]):
+            pose = before[way]
+            if pose != goal and towards[pose] == NOWHERE:
+                towards[pose] = after
+                queue[end] = pose
+                end += 1
     return towards

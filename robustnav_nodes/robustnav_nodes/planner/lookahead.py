@@ -101,7 +101,7 @@ class Lookahead:
             return np.ones(self._observability.candidates)
         reached = walk_everywhere(place, self._reach, start)
         steps = first_sight_distance(place, self._reach, reached)
-        return np.where(np.isfinite(steps), np.maximum(steps, 1.0), 0.0)
+        return np.where(np.isfinite(steps), np.maximum(steps, 1.0), 1.0)  # a closed way may cut off the start
 
     def _worth(self, step: int) -> Float64:
         ahead = np.arange(self._parameters.lookahead_steps + 1)

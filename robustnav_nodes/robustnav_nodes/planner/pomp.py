@@ -20,7 +20,8 @@ class Pomp:
     """Simulates searches for targets drawn from `particles`; a Policy.
 
     sees_again: whether a pose where the robot was before can still show the target, as in the thesis; a
-    detector that missed it there will miss it again. guided: whether rollouts go where the belief is (parameter `guidance`), or anywhere.
+    detector that missed it there will miss it again. guided: whether rollouts go where the belief is
+    (parameter `guidance`), or anywhere.
     """
 
     def __init__(

@@ -8,7 +8,7 @@ from robustnav_nodes.planner.parameters import PlannerParameters
 from robustnav_nodes.planner.policy import Sight
 from robustnav_nodes.search_space.candidates import Candidates
 
-# A probability that grew by less did not grow: a silent view lifts those at the belief's floor by up to that
+# Odds that grew by less did not grow: a silent view lifts those at the belief's floor by up to that
 # floor, relatively, when it makes the sum one again.
 _ROSE = 1.001
 
@@ -46,7 +46,7 @@ class Watch:
             pose=pose,
             probability=probability,
             in_view=in_view,
-            rose=in_view & (probability > before * _ROSE),
+            rose=in_view & (probability * (1.0 - before) > before * (1.0 - probability) * _ROSE),
             is_new=is_first or not np.array_equal(probability, before),
         )
         self._probability = probability
