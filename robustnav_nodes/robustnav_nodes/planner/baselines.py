@@ -45,12 +45,12 @@ class Greedy:
 
     def looked(self, sight: Sight) -> None:
         """See Policy; a candidate where the detector fired is worth a look from elsewhere."""
-        self._unseen |= sight.in_view & sight.rose
+        self._been[sight.pose] = True
+        self._unseen = (self._unseen & ~sight.in_view) | (sight.in_view & sight.rose)
 
     def decide(self, situation: Situation, rng: np.random.Generator) -> Choice | None:
         """See Policy."""
-        self._been[situation.pose] = True
-        self._unseen &= ~situation.sight.in_view | situation.sight.rose
+        self.looked(situation.sight)  # also where it has been before: there is nothing more to see there
         choice = self._towards_unseen(situation)
         if choice is None:  # what is left is seen from where it has been alone, or from nowhere in reach
             self._begin_again()
