@@ -11,17 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from bags.drawing.colors import (
-    BELIEF_COLORS,
-    BELIEF_SPAN,
-    FAINT,
-    FALSE_ALARM,
-    INK,
-    MUTED,
-    TARGET,
-    TIME_COLORS,
-    belief_norm,
-)
 from bags.drawing.floor import draw_map, draw_view, shown
 from bags.drawing.run import draw_alarms, draw_objects, draw_way
 from bags.false_alarms import FalseAlarm, false_alarms
@@ -32,6 +21,17 @@ from bags.search_run import SearchRun, read_search
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.records import SearchPhase
 from robustnav_msgs_py.values import OccupancyMap
+from robustnav_nodes.drawing.colors import (
+    BELIEF_COLORS,
+    BELIEF_SPAN,
+    FAINT,
+    FALSE_ALARM,
+    INK,
+    MUTED,
+    TARGET,
+    TIME_COLORS,
+    belief_norm,
+)
 
 WIDTH_IN, HEAD_IN, FOOT_IN, BAR_IN = 9.6, 0.72, 0.95, 0.3
 TALLEST_IN = 12.0

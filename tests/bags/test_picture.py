@@ -8,12 +8,12 @@ import pytest
 from matplotlib import colors, image
 
 from bags.definitions import message_definition
-from bags.drawing.colors import FALSE_ALARM, TARGET
 from bags.manifest import Manifest
 from bags.picture import draw_search
 from bags.reader import open_bag
 from bags.writer import BagWriter
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_nodes.drawing.colors import FALSE_ALARM, TARGET
 
 
 def drawn(bag_path: Path, png: Path) -> np.ndarray:

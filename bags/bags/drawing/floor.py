@@ -9,7 +9,8 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bags.drawing.colors import (
+from robustnav_msgs_py.values import BeliefCloud, OccupancyMap, Pose2D
+from robustnav_nodes.drawing.colors import (
     BELIEF_COLORS,
     BELIEF_SPAN,
     FLOOR,
@@ -19,7 +20,6 @@ from bags.drawing.colors import (
     WALL,
     belief_norm,
 )
-from robustnav_msgs_py.values import BeliefCloud, OccupancyMap, Pose2D
 from robustnav_nodes.search_space.candidates import MASKED_FROM
 
 

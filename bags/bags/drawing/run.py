@@ -12,10 +12,10 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D
 
-from bags.drawing.colors import FAINT, FALSE_ALARM, INK, MUTED, TARGET, TIME_COLORS
 from bags.false_alarms import FalseAlarm
 from bags.search_run import SearchRun
 from robustnav_msgs_py.values import Pose2D
+from robustnav_nodes.drawing.colors import FAINT, FALSE_ALARM, INK, MUTED, TARGET, TIME_COLORS
 
 TICK_M = 0.2
 ARROW_HEAD = Outline([(1.0, 0.0), (-0.7, 0.7), (-0.35, 0.0), (-0.7, -0.7), (1.0, 0.0)], closed=True)

@@ -15,7 +15,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from bags.drawing.colors import (
+from robustnav_msgs_py.values import Float64
+from robustnav_nodes.benchmarks.contestants import Contestant
+from robustnav_nodes.benchmarks.search_episode import BeliefMoment, EpisodeResult, run_episode
+from robustnav_nodes.benchmarks.search_plan import SceneJob, chance_of, drawn_episode
+from robustnav_nodes.benchmarks.search_plots import DPI, save
+from robustnav_nodes.benchmarks.search_scene import SearchScene, SearchTarget
+from robustnav_nodes.drawing.colors import (
     BELIEF_COLORS,
     BELIEF_SPAN,
     FALSE_ALARM,
@@ -28,12 +34,6 @@ from bags.drawing.colors import (
     WALL,
     belief_norm,
 )
-from robustnav_msgs_py.values import Float64
-from robustnav_nodes.benchmarks.contestants import Contestant
-from robustnav_nodes.benchmarks.search_episode import BeliefMoment, EpisodeResult, run_episode
-from robustnav_nodes.benchmarks.search_plan import SceneJob, chance_of, drawn_episode
-from robustnav_nodes.benchmarks.search_plots import DPI, save
-from robustnav_nodes.benchmarks.search_scene import SearchScene, SearchTarget
 from robustnav_nodes.search_space.floor_grid import FREE, OCCUPIED
 from robustnav_nodes.search_space.observability import Observability
 from robustnav_nodes.search_space.space import SearchSpace

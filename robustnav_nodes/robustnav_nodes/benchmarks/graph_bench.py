@@ -5,17 +5,17 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bags.metrics import SearchMetrics, measure
-from bags.metrics_settings import settings_of
-from bags.reader import open_bag
-from bags.search_run import read_search
 from robustnav_msgs_py.errors import GraphError, RobustnavError
 from robustnav_nodes.benchmarks.contestants import DEFAULT
 from robustnav_nodes.benchmarks.search_bench import SearchRow, row_of
 from robustnav_nodes.benchmarks.search_episode import Outcome
+
+if TYPE_CHECKING:  # bags stands on this package, so that it may be missing here
+    from bags.metrics import SearchMetrics
 
 DIFFICULTY, DETECTOR = "graph", "simulated"
 
@@ -25,7 +25,7 @@ class GraphEpisode:
     """One demo, as its bag tells it."""
 
     seed: int
-    metrics: SearchMetrics
+    metrics: "SearchMetrics"
     decision_ms: tuple[float, ...]
 
     @property
@@ -76,6 +76,11 @@ def run_demo(seed: int, bag: Path) -> GraphEpisode:
 
 def measured(seed: int, bag: Path) -> GraphEpisode:
     """The search in `bag`. Raises what `read_search` raises."""
+    from bags.metrics import measure
+    from bags.metrics_settings import settings_of
+    from bags.reader import open_bag
+    from bags.search_run import read_search
+
     with open_bag(bag) as opened:
         run = read_search(opened)
         metrics = measure(run, settings_of(opened.manifest, run.namespace))

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import robustnav_nodes
-from bags.provenance import manifest_of_this_run
 from robustnav_msgs_py.errors import BadFileError
 
 
@@ -30,6 +29,8 @@ def write_report(path: Path, bench: str, **content: Any) -> None:
 
     Raises BadFileError where it cannot be written.
     """
+    from bags.provenance import manifest_of_this_run  # bags stands on this package
+
     code = manifest_of_this_run(Path(robustnav_nodes.__file__))
     report = {"bench": bench, "version": code.version, "commit": code.commit, **content}
     if code.uncommitted_changes:

@@ -9,13 +9,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg  # no screen
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bags.drawing.colors import FAINT, INK, MUTED
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.benchmarks.bootstrap import mean_intervals
 from robustnav_nodes.benchmarks.contestants import DEFAULT, NAMES
 from robustnav_nodes.benchmarks.search_bench import cells_of
 from robustnav_nodes.benchmarks.search_plan import PlayedEpisode
+from robustnav_nodes.drawing.colors import FAINT, INK, MUTED
 
 BINS = 5
 EPISODES_IN_BIN = 8  # of each planner, at least

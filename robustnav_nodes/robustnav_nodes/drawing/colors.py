@@ -1,4 +1,4 @@
-"""Colours of the picture: quiet for the place, one warm scale for belief, one cool scale for time."""
+"""Colours: quiet for the place, one warm scale for belief, one cool scale for time."""
 
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 
