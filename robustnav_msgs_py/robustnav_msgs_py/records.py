@@ -35,8 +35,9 @@ class SearchState:
 class Decision:
     """One decision of the planner: what was chosen, and how every legal action looked.
 
-    `actions`, `values` and `visits` have one entry per legal action: mean discounted return and number of
-    simulations. `tau` is the probability in view at which the search ends, `p_in_view` what it is now.
+    `actions`, `values` and `visits` have one entry per legal action: what the planner expects of it (NaN: not
+    tried) and number of simulations. `tau` is the probability in view at which the search ends, `p_in_view`
+    what it is now.
     `x_m`, `y_m`, `yaw_rad` is where the robot decided, `goal_...` where the action leads.
     """
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.planner.policy import Choice, Sight, Situation, choose, legal_actions
+from robustnav_nodes.planner.policy import Choice, Sight, Situation, choose
 from robustnav_nodes.planner.viewpoints import (
     NONE,
     Reach,
@@ -11,7 +11,6 @@ from robustnav_nodes.planner.viewpoints import (
     empty_reach,
     outlook_on,
     place_of,
-    walk_everywhere,
     way_to,
 )
 from robustnav_nodes.search_space.observability import Observability
@@ -26,7 +25,7 @@ class RandomWalk:
 
     def decide(self, situation: Situation, rng: np.random.Generator) -> Choice | None:
         """See Policy."""
-        legal = legal_actions(situation.graph, situation.pose)
+        legal = situation.graph.legal_actions(situation.pose)
         return choose(int(legal[rng.integers(len(legal))]), "at random")
 
 
@@ -90,7 +89,6 @@ def _towards_best(
     goal = best_viewpoint(place, outlook, reach, situation.pose, float(outlook.gain.max()))
     if goal == NONE:
         return None
-    walk_everywhere(place, reach, situation.pose)
     way = way_to(reach, goal)
     action = int(np.argmax(situation.graph.successors[situation.pose] == way[0]))
     return choose(action, f"towards a pose {len(way)} steps away")

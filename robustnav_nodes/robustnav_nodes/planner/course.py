@@ -10,7 +10,7 @@ from robustnav_msgs_py.records import SearchPhase
 from robustnav_msgs_py.values import Bool, Pose2D
 from robustnav_nodes.planner.docking import destination_pose
 from robustnav_nodes.planner.parameters import PlannerParameters
-from robustnav_nodes.planner.policy import Choice, Sight, Situation, legal_actions
+from robustnav_nodes.planner.policy import Choice, Sight, Situation
 from robustnav_nodes.planner.pomcp import Clock
 from robustnav_nodes.planner.variants import policy_of
 from robustnav_nodes.search_space.pose_graph import PoseGraph
@@ -137,7 +137,7 @@ class Course:
         self._docking_at, self._docking_view = None, None
         if self.steps >= self._parameters.max_steps:
             return self._give_up(sight, f"not found within {self._parameters.max_steps} steps")
-        if len(legal_actions(self._graph, sight.pose)) == 0:
+        if not self._graph.legal_actions(sight.pose):
             return self._give_up(sight, "every way from here is closed")
         situation = Situation(
             graph=self._graph,

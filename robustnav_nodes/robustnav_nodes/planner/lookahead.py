@@ -27,9 +27,8 @@ from robustnav_nodes.planner.viewpoints import (
     way_to,
     worth_of_way,
 )
+from robustnav_nodes.search_space.pose_graph import Action
 from robustnav_nodes.search_space.space import SearchSpace
-
-_ACTIONS = 4
 
 
 class Lookahead:
@@ -70,8 +69,8 @@ class Lookahead:
         worth = self._worth(situation.step)
         most = float(outlook.gain.max())
 
-        values = np.full(_ACTIONS, np.nan)
-        visits = np.zeros(_ACTIONS, dtype=np.int32)
+        values = np.full(len(Action), np.nan)
+        visits = np.zeros(len(Action), dtype=np.int32)
         best_value, best_goal, best_action = -np.inf, int(goals[0]), 0
         tried = 0
         for goal, way in zip(goals, ways, strict=True):

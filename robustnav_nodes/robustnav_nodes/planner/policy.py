@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.search_space.pose_graph import NOWHERE, PoseGraph
+from robustnav_nodes.search_space.pose_graph import Action, PoseGraph
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,16 +84,10 @@ class Policy(Protocol):
 
 def choose(action: int, reason: str) -> Choice:
     """A choice that weighed nothing."""
-    actions = 4
     return Choice(
         action=action,
-        values=np.full(actions, np.nan),
-        visits=np.zeros(actions, dtype=np.int32),
+        values=np.full(len(Action), np.nan),
+        visits=np.zeros(len(Action), dtype=np.int32),
         simulations=0,
         reason=reason,
     )
-
-
-def legal_actions(graph: PoseGraph, pose: int) -> NDArray[np.int64]:
-    """int64 [a]: the actions that lead somewhere from `pose`."""
-    return np.nonzero(graph.successors[pose] != NOWHERE)[0]

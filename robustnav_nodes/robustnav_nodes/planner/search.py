@@ -6,8 +6,8 @@ import numpy as np
 
 from robustnav_msgs_py.values import Bool, Float64
 from robustnav_nodes.planner.course import Course, Step
-from robustnav_nodes.planner.ending import Ending
 from robustnav_nodes.planner.parameters import PlannerParameters
+from robustnav_nodes.planner.policy import Sight
 from robustnav_nodes.planner.pomcp import Clock
 from robustnav_nodes.planner.watch import Watch
 from robustnav_nodes.search_space.space import SearchSpace
@@ -36,16 +36,20 @@ class Search(Course):
         self._watch = Watch(space.candidates, parameters, prior)
 
     @property
-    def ending(self) -> Ending:
-        """What ends the search."""
-        return self._watch.ending
+    def threshold(self) -> float:
+        """The probability in view that is enough."""
+        return self._watch.ending.threshold
+
+    def p_in_view(self, sight: Sight) -> float:
+        """The probability that is held against the threshold: in view now, or when the docking began."""
+        return self._watch.ending.p_in_view(self._asked(sight))
 
     def look(self, pose: int, in_view: Bool, probability: Float64) -> Step:
         """Take in what the robot knows at `pose` (in_view: bool [k]; probability: R, float64 [k])."""
         sight = self._watch.look(pose, in_view, probability)
         self._took_in(sight)
-        found = self.ending.found(self._asked(sight))
-        return self._go_on(sight, found, may_change=self.ending.may_change)
+        ending = self._watch.ending
+        return self._go_on(sight, ending.found(self._asked(sight)), may_change=ending.may_change)
 
     def move_to(self, space: SearchSpace) -> None:
         """See Course and Watch."""

@@ -12,7 +12,6 @@ from robustnav_msgs_py.values import BeliefCloud, Pose2D
 from robustnav_nodes.planner.cloud_check import check_cloud
 from robustnav_nodes.planner.course import Step
 from robustnav_nodes.planner.parameters import PlannerParameters
-from robustnav_nodes.planner.policy import legal_actions
 from robustnav_nodes.planner.pomcp import Clock
 from robustnav_nodes.planner.search import Search
 from robustnav_nodes.search_space.pose_graph import Action
@@ -145,24 +144,24 @@ class SearchSession:
         found = f"{self._state.target} near ({x_m:.2f}, {y_m:.2f}) m with p {p_here:.3g}"
         if step.phase is SearchPhase.FOUND:
             return found
-        p_in_view = self._search.ending.p_in_view(step.sight)
+        p_in_view = self._search.p_in_view(step.sight)
         return f"{found}, {p_in_view:.3g} in view; {len(step.path) - 1} steps to go"
 
     def _decision(self, step: Step, poses: tuple[Pose2D, ...], reason: str) -> Decision:
         choice, here, goal = step.choice, poses[0], poses[1]
-        legal = legal_actions(self._search.graph, step.path[0]) if choice is not None else ()
+        legal = self._search.graph.legal_actions(step.path[0]) if choice is not None else ()
         return Decision(
             episode=self._state.episode,
             step=self._state.step,
             planner=self._parameters.variant,
             action="dock" if choice is None else Action(choice.action).text,
-            actions=tuple(Action(option).text for option in legal),
+            actions=tuple(option.text for option in legal),
             values=tuple(float(choice.values[option]) for option in legal) if choice is not None else (),
             visits=tuple(int(choice.visits[option]) for option in legal) if choice is not None else (),
             simulations=choice.simulations if choice is not None else 0,
             elapsed_ms=step.elapsed_ms,
-            p_in_view=self._search.ending.p_in_view(step.sight),
-            tau=self._search.ending.threshold,
+            p_in_view=self._search.p_in_view(step.sight),
+            tau=self._search.threshold,
             entropy=step.sight.normalised_entropy(),
             x_m=here.x_m,
             y_m=here.y_m,

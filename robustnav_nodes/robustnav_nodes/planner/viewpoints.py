@@ -102,16 +102,35 @@ def look_from(place: Place, outlook: Outlook, pose: int, recall: float) -> float
 
 
 @compiled
+def _begin_walk(reach: Reach, start: int) -> int:
+    """Begin a breadth-first walk at `start`; gives the length of its queue."""
+    reach.walks[0] += 1
+    reach.round[start], reach.distance[start], reach.parent[start] = reach.walks[0], 0, NONE
+    reach.queue[0] = start
+    return 1
+
+
+@compiled
+def _walk_on(place: Place, reach: Reach, pose: int, end: int) -> int:
+    """Queue what one action from `pose` leads to for the first time; gives the new length of the queue."""
+    for action in range(place.successors.shape[1]):
+        after = place.successors[pose, action]
+        if after != NOWHERE and reach.round[after] != reach.walks[0]:
+            reach.round[after] = reach.walks[0]
+            reach.distance[after] = reach.distance[pose] + 1
+            reach.parent[after] = pose
+            reach.queue[end] = after
+            end += 1
+    return end
+
+
+@compiled
 def best_viewpoint(place: Place, outlook: Outlook, reach: Reach, start: int, most: float) -> int:
     """The pose with the most gain per step on the way there, NONE where nothing is left; its way in `reach`.
 
     most: no gain is larger; the walk ends where no pose farther away could be better.
     """
-    reach.walks[0] += 1
-    walk = reach.walks[0]
-    reach.round[start], reach.distance[start], reach.parent[start] = walk, 0, NONE
-    reach.queue[0] = start
-    first, end = 0, 1
+    first, end = 0, _begin_walk(reach, start)
     best, best_ratio = NONE, _NEGLIGIBLE
     while first < end:
         pose = reach.queue[first]
@@ -123,14 +142,7 @@ def best_viewpoint(place: Place, outlook: Outlook, reach: Reach, start: int, mos
             ratio = outlook.gain[pose] / distance
             if ratio > best_ratio and not outlook.looked[pose]:
                 best, best_ratio = pose, ratio
-        for action in range(place.successors.shape[1]):
-            after = place.successors[pose, action]
-            if after != NOWHERE and reach.round[after] != walk:
-                reach.round[after] = walk
-                reach.distance[after] = distance + 1
-                reach.parent[after] = pose
-                reach.queue[end] = after
-                end += 1
+        end = _walk_on(place, reach, pose, end)
     return best
 
 
@@ -177,22 +189,11 @@ def worth_of_way(
 @compiled
 def walk_everywhere(place: Place, reach: Reach, start: int) -> int:
     """Walk from `start` to all that it reaches, nearest first; gives how many poses these are, with it."""
-    reach.walks[0] += 1
-    walk = reach.walks[0]
-    reach.round[start], reach.distance[start], reach.parent[start] = walk, 0, NONE
-    reach.queue[0] = start
-    first, end = 0, 1
+    first, end = 0, _begin_walk(reach, start)
     while first < end:
         pose = reach.queue[first]
         first += 1
-        for action in range(place.successors.shape[1]):
-            after = place.successors[pose, action]
-            if after != NOWHERE and reach.round[after] != walk:
-                reach.round[after] = walk
-                reach.distance[after] = reach.distance[pose] + 1
-                reach.parent[after] = pose
-                reach.queue[end] = after
-                end += 1
+        end = _walk_on(place, reach, pose, end)
     return end
 
 
