@@ -42,7 +42,7 @@ from robustnav_msgs_py.errors import BadMessageError, BadSceneError
 from robustnav_msgs_py.values import Pose2D, StampedPose, Velocity
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
-from sim_bridge.floor_plan import candidate_mask, floor_plan
+from sim_bridge.homes.floor_plan import candidate_mask, floor_plan
 from sim_bridge.pace import MOST_BEHIND_S, SHORTEST_TIMER_S, TURN_S, Pace
 from sim_bridge.parameters import SimParameters
 

@@ -6,18 +6,18 @@ from types import TracebackType
 from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.records import Episode
 from robustnav_msgs_py.values import CameraModel, LaserScan, Odometry, Pose2D, Velocity, VisibleObjects
-from sim_bridge.camera import Camera, CameraFrame, camera_model
-from sim_bridge.drive import STANDSTILL, Drive, DriveLimits
-from sim_bridge.floor_plan import RESOLUTION_M
-from sim_bridge.generator import generate_home
-from sim_bridge.goal_follower import GoalFollower
-from sim_bridge.home import Home
-from sim_bridge.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.floor_plan import RESOLUTION_M
+from sim_bridge.homes.generator import generate_home
+from sim_bridge.homes.home import Home
 from sim_bridge.parameters import SimParameters
-from sim_bridge.route import RoutePlanner
-from sim_bridge.scan import Laser
-from sim_bridge.visibility import Observer
-from sim_bridge.world import World
+from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
+from sim_bridge.robot.goal_follower import GoalFollower
+from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.robot.route import RoutePlanner
+from sim_bridge.sensors.camera import Camera, CameraFrame, camera_model
+from sim_bridge.sensors.scan import Laser
+from sim_bridge.sensors.visibility import Observer
+from sim_bridge.sensors.world import World
 
 NS_PER_S = 1_000_000_000
 # ROS takes time 0 for "no time yet".

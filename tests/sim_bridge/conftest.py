@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.generator import generate_home
-from sim_bridge.home import Home
-from sim_bridge.obstacles import ClearanceGrid
+from sim_bridge.homes.generator import generate_home
+from sim_bridge.homes.home import Home
 from sim_bridge.parameters import SimParameters
+from sim_bridge.robot.obstacles import ClearanceGrid
 
 if TYPE_CHECKING:
     from sim_bridge.simulation import Simulation
@@ -20,8 +20,13 @@ SEEDS = range(30)
 # Homes, maps and driving are tested without PyBullet, all but the node without ROS.
 collect_ignore = [] if find_spec("rclpy") else ["test_node.py"]
 if not find_spec("pybullet"):
-    names = ("camera", "goal_follower", "node", "scan", "shapes", "simulation", "visibility")
-    collect_ignore += [f"test_{name}.py" for name in names]
+    collect_ignore += [
+        "homes/test_shapes.py",
+        "robot/test_goal_follower.py",
+        "sensors",
+        "test_node.py",
+        "test_simulation.py",
+    ]
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.floor_plan import OCCUPIED, floor_plan
+from sim_bridge.homes.floor_plan import OCCUPIED, floor_plan
 from sim_bridge.simulation import Simulation
 
 FreePoses = Callable[..., list[Pose2D]]

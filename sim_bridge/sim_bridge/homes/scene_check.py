@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.floor_plan import RESOLUTION_M
-from sim_bridge.furnishing import PASSAGE_RADII_M
-from sim_bridge.home import Furniture, Home, Rect, SmallObject
-from sim_bridge.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.floor_plan import RESOLUTION_M
+from sim_bridge.homes.furnishing import PASSAGE_RADII_M
+from sim_bridge.homes.home import Furniture, Home, Rect, SmallObject
+from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 MIN_ROOMS = 3
 MIN_DOOR_M = 0.90

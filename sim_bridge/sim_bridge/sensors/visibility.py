@@ -12,10 +12,10 @@ import numpy as np
 
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
 from robustnav_msgs_py.values import Bool, CameraModel, Float64, Pose2D, VisibleObjects
-from sim_bridge.camera import OPTICAL_FRAME, map_from_optical
-from sim_bridge.home import Home, SmallObject
-from sim_bridge.shapes import first_hit_m
-from sim_bridge.world import NOTHING, World
+from sim_bridge.homes.home import Home, SmallObject
+from sim_bridge.homes.shapes import first_hit_m
+from sim_bridge.sensors.camera import OPTICAL_FRAME, map_from_optical
+from sim_bridge.sensors.world import NOTHING, World
 
 # At most this many rays along each axis of an object's projection: small objects get one per pixel.
 RAYS_PER_AXIS = 32

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.home import Home
-from sim_bridge.shapes import Part, Shape, ball, box, cylinder, extent, first_hit_m
-from sim_bridge.world import World
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.shapes import Part, Shape, ball, box, cylinder, extent, first_hit_m
+from sim_bridge.sensors.world import World
 
 RED = (1.0, 0.0, 0.0)
 ALONG_X = np.array([[1.0, 0.0, 0.0]])

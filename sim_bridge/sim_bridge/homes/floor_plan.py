@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
-from sim_bridge.home import Home, Rect
+from sim_bridge.homes.home import Home, Rect
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 RESOLUTION_M = 0.05

@@ -7,7 +7,7 @@ colour. An object's frame has its origin below its middle; x is its front.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from sim_bridge.shapes import Colour, Part, ball, box, cylinder
+from sim_bridge.homes.shapes import Colour, Part, ball, box, cylinder
 
 COLOURS: dict[str, Colour] = {
     "red": (0.80, 0.12, 0.10),

@@ -5,13 +5,13 @@ import pytest
 from scipy import ndimage
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.arrangement import UNIQUE_CLASSES
-from sim_bridge.floor_plan import FREE, OCCUPIED, RESOLUTION_M, candidate_mask, floor_plan
-from sim_bridge.furniture import BUILDERS
-from sim_bridge.generator import generate_home
-from sim_bridge.home import Home, Rect
-from sim_bridge.objects import CLASSES, COLOURS, LABELS
-from sim_bridge.shapes import Part, Shape, extent
+from sim_bridge.homes.arrangement import UNIQUE_CLASSES
+from sim_bridge.homes.floor_plan import FREE, OCCUPIED, RESOLUTION_M, candidate_mask, floor_plan
+from sim_bridge.homes.furniture import BUILDERS
+from sim_bridge.homes.generator import generate_home
+from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.objects import CLASSES, COLOURS, LABELS
+from sim_bridge.homes.shapes import Part, Shape, extent
 
 PLANNERS_RADIUS_M = 0.18
 

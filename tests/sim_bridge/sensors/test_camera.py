@@ -9,11 +9,11 @@ import pytest
 
 from robustnav_msgs_py.frames import CameraMount, map_from_base, optical_from_base
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.camera import Camera, camera_model, map_from_optical
-from sim_bridge.home import Furniture, Home
-from sim_bridge.shapes import box
+from sim_bridge.homes.home import Furniture, Home
+from sim_bridge.homes.shapes import box
+from sim_bridge.sensors.camera import Camera, camera_model, map_from_optical
+from sim_bridge.sensors.world import NOTHING, World
 from sim_bridge.simulation import Simulation
-from sim_bridge.world import NOTHING, World
 
 FreePoses = Callable[..., list[Pose2D]]
 

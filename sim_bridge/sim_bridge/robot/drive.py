@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.obstacles import Obstacles
+from sim_bridge.robot.obstacles import Obstacles
 
 STANDSTILL = Velocity(linear_m_s=0.0, angular_rad_s=0.0)
 # Halvings of a step that would end too close: to 1/64 of it.

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.home import DOOR_HEIGHT_M, WALL_HEIGHT_M, WALL_THICKNESS_M, Door, Rect, Room, Side, Wall
-from sim_bridge.shapes import Colour
+from sim_bridge.homes.home import DOOR_HEIGHT_M, WALL_HEIGHT_M, WALL_THICKNESS_M, Door, Rect, Room, Side, Wall
+from sim_bridge.homes.shapes import Colour
 
 GRID_M = 0.05
 AREA_PER_ROOM_M2 = (13.0, 16.0)

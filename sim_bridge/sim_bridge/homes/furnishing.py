@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.carpentry import Design
-from sim_bridge.furniture import BUILDERS
-from sim_bridge.home import Door, Furniture, Rect, Room
-from sim_bridge.obstacles import ClearanceGrid
-from sim_bridge.rooms import Layout, snapped
+from sim_bridge.homes.carpentry import Design
+from sim_bridge.homes.furniture import BUILDERS
+from sim_bridge.homes.home import Door, Furniture, Rect, Room
+from sim_bridge.homes.rooms import Layout, snapped
+from sim_bridge.robot.obstacles import ClearanceGrid
 
 # Between furniture and anything else.
 GAP_M = 0.10

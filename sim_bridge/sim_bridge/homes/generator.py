@@ -7,14 +7,14 @@ import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.arrangement import arrange
-from sim_bridge.floor_plan import RESOLUTION_M
-from sim_bridge.furnishing import furnish
-from sim_bridge.home import Home
-from sim_bridge.objects import LABELS
-from sim_bridge.obstacles import ClearanceGrid
-from sim_bridge.rooms import ROOM_PLANS, lay_out
-from sim_bridge.scene_check import check_home
+from sim_bridge.homes.arrangement import arrange
+from sim_bridge.homes.floor_plan import RESOLUTION_M
+from sim_bridge.homes.furnishing import furnish
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.objects import LABELS
+from sim_bridge.homes.rooms import ROOM_PLANS, lay_out
+from sim_bridge.homes.scene_check import check_home
+from sim_bridge.robot.obstacles import ClearanceGrid
 
 DRAWS = 60
 OBJECT_COUNT = (14, 20)

@@ -6,8 +6,8 @@ import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.home import Home
-from sim_bridge.scene_check import check_home
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.scene_check import check_home
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Float64, Pose2D
-from sim_bridge.world import NOTHING, World
+from sim_bridge.sensors.world import NOTHING, World
 
 OPTICAL_FRAME = "camera_optical_frame"
 NEAR_M = 0.05

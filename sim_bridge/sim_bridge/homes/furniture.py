@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim_bridge.carpentry import (
+from sim_bridge.homes.carpentry import (
     BOARD_M,
     DARK,
     FABRICS,
@@ -23,7 +23,7 @@ from sim_bridge.carpentry import (
     surface_at,
     table,
 )
-from sim_bridge.shapes import box, cylinder
+from sim_bridge.homes.shapes import box, cylinder
 
 
 def kitchen_counter(rng: np.random.Generator) -> Design:

@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from sim_bridge.home import Rect, Surface
-from sim_bridge.shapes import Colour, Part, Size, box
+from sim_bridge.homes.home import Rect, Surface
+from sim_bridge.homes.shapes import Colour, Part, Size, box
 
 T = TypeVar("T")
 

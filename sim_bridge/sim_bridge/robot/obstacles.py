@@ -7,7 +7,7 @@ import numpy as np
 import scipy.ndimage
 
 from robustnav_msgs_py.values import Float64
-from sim_bridge.home import Rect
+from sim_bridge.homes.home import Rect
 
 
 class Obstacles:

@@ -12,7 +12,7 @@ import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64, ObjectInstance, Pose2D
-from sim_bridge.shapes import Colour, Part, Size, extent
+from sim_bridge.homes.shapes import Colour, Part, Size, extent
 
 WALL_THICKNESS_M = 0.10
 WALL_HEIGHT_M = 2.50

@@ -8,8 +8,8 @@ from enum import StrEnum
 
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.drive import STANDSTILL, Drive, describe
-from sim_bridge.route import NoWayError, Point, RoutePlanner
+from sim_bridge.robot.drive import STANDSTILL, Drive, describe
+from sim_bridge.robot.route import NoWayError, Point, RoutePlanner
 
 # Moves up to this length go backwards where that saves turning.
 REVERSE_M = 0.60

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.home import Furniture, SmallObject, Surface
-from sim_bridge.objects import CLASSES, COLOURS, ObjectClass
-from sim_bridge.shapes import Part, extent
+from sim_bridge.homes.home import Furniture, SmallObject, Surface
+from sim_bridge.homes.objects import CLASSES, COLOURS, ObjectClass
+from sim_bridge.homes.shapes import Part, extent
 
 # Besides at least this many classes of which the home holds one object ...
 UNIQUE_CLASSES = 5

@@ -9,7 +9,7 @@ import scipy.sparse.csgraph
 
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.values import Float64
-from sim_bridge.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 Point = tuple[float, float]
 

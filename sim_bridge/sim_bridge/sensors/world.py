@@ -9,8 +9,8 @@ import pybullet
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64
-from sim_bridge.home import WALL_THICKNESS_M, Home, Rect, Side, Wall
-from sim_bridge.shapes import Colour, Part, Shape, box
+from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Rect, Side, Wall
+from sim_bridge.homes.shapes import Colour, Part, Shape, box
 
 FLOOR_THICKNESS_M = 0.05
 # PyBullet takes this many primitives in one body and this many rays in one call.

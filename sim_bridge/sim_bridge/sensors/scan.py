@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from robustnav_msgs_py.values import LaserScan, Pose2D
-from sim_bridge.world import NOTHING, World
+from sim_bridge.sensors.world import NOTHING, World
 
 LASER_FRAME = "laser"
 LASER_HEIGHT_M = 0.20

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.camera import Camera
+from sim_bridge.sensors.camera import Camera
+from sim_bridge.sensors.visibility import RAYS_PER_AXIS
+from sim_bridge.sensors.world import NOTHING, World
 from sim_bridge.simulation import Simulation
-from sim_bridge.visibility import RAYS_PER_AXIS
-from sim_bridge.world import NOTHING, World
 
 FreePoses = Callable[..., list[Pose2D]]
 

@@ -1,0 +1,1 @@
+"""The robot: how it moves, and how it finds its way without touching anything."""

@@ -1,0 +1,1 @@
+"""What the robot senses: pictures, laser scans, and the truth behind them."""
