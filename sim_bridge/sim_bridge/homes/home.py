@@ -6,13 +6,14 @@ its footprint is one. Everything is frozen: a home does not change once it is ma
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
-from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64, ObjectInstance, Pose2D
-from sim_bridge.homes.shapes import Colour, Part, Size, extent
+from sim_bridge.homes.materials import Material
+from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.scene import Look, Style
+from sim_bridge.homes.shapes import Part, Vector3, extent
 
 WALL_THICKNESS_M = 0.10
 WALL_HEIGHT_M = 2.50
@@ -22,79 +23,14 @@ ROBOT_HEIGHT_M = 1.30
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rect:
-    """A rectangle on the floor, aligned with the axes of `map`, in metres."""
-
-    x_min_m: float
-    y_min_m: float
-    x_max_m: float
-    y_max_m: float
-
-    def __post_init__(self) -> None:
-        if not (self.x_min_m < self.x_max_m and self.y_min_m < self.y_max_m):
-            raise BadSceneError(f"a rectangle needs an extent: {self!r}")
-
-    @property
-    def width_m(self) -> float:
-        """Extent along x."""
-        return self.x_max_m - self.x_min_m
-
-    @property
-    def depth_m(self) -> float:
-        """Extent along y."""
-        return self.y_max_m - self.y_min_m
-
-    @property
-    def area_m2(self) -> float:
-        """Area."""
-        return self.width_m * self.depth_m
-
-    @property
-    def centre_m(self) -> tuple[float, float]:
-        """The middle: x, y."""
-        return (self.x_min_m + self.x_max_m) / 2.0, (self.y_min_m + self.y_max_m) / 2.0
-
-    def grown(self, margin_m: float) -> "Rect":
-        """The rectangle with `margin_m` added on every side (taken away where negative)."""
-        return Rect(
-            x_min_m=self.x_min_m - margin_m,
-            y_min_m=self.y_min_m - margin_m,
-            x_max_m=self.x_max_m + margin_m,
-            y_max_m=self.y_max_m + margin_m,
-        )
-
-    def overlaps(self, other: "Rect", tolerance_m: float = 1e-6) -> bool:
-        """Whether the two share more than an edge."""
-        return (
-            self.x_min_m < other.x_max_m - tolerance_m
-            and other.x_min_m < self.x_max_m - tolerance_m
-            and self.y_min_m < other.y_max_m - tolerance_m
-            and other.y_min_m < self.y_max_m - tolerance_m
-        )
-
-    def contains(self, other: "Rect", tolerance_m: float = 1e-6) -> bool:
-        """Whether `other` lies wholly inside."""
-        return (
-            self.x_min_m <= other.x_min_m + tolerance_m
-            and other.x_max_m <= self.x_max_m + tolerance_m
-            and self.y_min_m <= other.y_min_m + tolerance_m
-            and other.y_max_m <= self.y_max_m + tolerance_m
-        )
-
-    def holds(self, x_m: float, y_m: float) -> bool:
-        """Whether the point lies inside or on the edge."""
-        return self.x_min_m <= x_m <= self.x_max_m and self.y_min_m <= y_m <= self.y_max_m
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Room:
     """One room; `inside` is its floor between the walls."""
 
     name: str
     kind: str
     inside: Rect
-    floor_colour: Colour
-    wall_colour: Colour
+    floor: Material
+    walls: Material
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,15 +47,6 @@ class Door:
         return self.opening.width_m if self.along_x else self.opening.depth_m
 
 
-class Side(StrEnum):
-    """The sides of a rectangle on the floor."""
-
-    SOUTH = "south"
-    NORTH = "north"
-    WEST = "west"
-    EAST = "east"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wall:
     """A straight piece of wall, or the lintel above a door.
@@ -130,16 +57,31 @@ class Wall:
     base: Rect
     z_min_m: float
     z_max_m: float
-    colour: Colour
+    material: Material
     hidden: Side
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Window:
+    """A window in an outer wall; `pane` is its place seen from above, thin, on the inner face of the wall."""
+
+    room: str
+    side: Side
+    pane: Rect
+    z_min_m: float
+    z_max_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Surface:
-    """Where objects can stand on a piece of furniture: a rectangle in its own frame, at a height."""
+    """Where objects can stand on a piece of furniture: a rectangle in its own frame, at a height.
+
+    Where `hangs`, it is a strip of the wall behind the piece, and objects hang there with that lower edge.
+    """
 
     area: Rect
     height_m: float
+    hangs: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,6 +97,7 @@ class Furniture:
     x_m: float
     y_m: float
     quarter_turns: int
+    style: Style
     depth_m: float
     width_m: float
     height_m: float
@@ -205,9 +148,10 @@ class SmallObject:
 
     instance: int
     label: str
-    colour_name: str
+    look: Look
     room: str
     furniture: str
+    surface: int
     x_m: float
     y_m: float
     z_m: float
@@ -215,13 +159,13 @@ class SmallObject:
     parts: tuple[Part, ...]
 
     @property
-    def size_m(self) -> Size:
+    def size_m(self) -> Vector3:
         """Extent along its own axes."""
         low, high = extent(self.parts)
         return high[0] - low[0], high[1] - low[1], high[2] - low[2]
 
     @property
-    def centre_m(self) -> Size:
+    def centre_m(self) -> Vector3:
         """The middle of the box around it, in `map`."""
         low, high = extent(self.parts)
         x, y = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0
@@ -274,14 +218,16 @@ class SmallObject:
 class Home:
     """A whole home. `bounds` reaches to the outer faces of the outer walls; `start` is the robot's.
 
-    `labels` are the class names of the catalogue, in the order of their numbers: the same in every home.
+    `seed` is None where a person wrote the scene. `labels` are the class names of the catalogue, in the order
+    of their numbers: the same in every home.
     """
 
     name: str
-    seed: int
+    seed: int | None
     bounds: Rect
     rooms: tuple[Room, ...]
     doors: tuple[Door, ...]
+    windows: tuple[Window, ...]
     walls: tuple[Wall, ...]
     furniture: tuple[Furniture, ...]
     objects: tuple[SmallObject, ...]

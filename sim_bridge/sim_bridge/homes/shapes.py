@@ -1,26 +1,39 @@
-"""What everything in a home is made of: boxes, cylinders and balls with a colour."""
+"""What everything in a home is made of: boxes, cylinders and balls of some material."""
 
 import math
-from dataclasses import dataclass
-from enum import StrEnum
+from dataclasses import dataclass, replace
+from enum import IntEnum, StrEnum
 
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64
+from sim_bridge.homes.materials import Material
 
-Colour = tuple[float, float, float]
-Size = tuple[float, float, float]
+Vector3 = tuple[float, float, float]
 
 NEVER = np.inf
 
 
 class Shape(StrEnum):
-    """The primitive a part is; a cylinder stands upright."""
+    """The primitive a part is."""
 
     BOX = "box"
     CYLINDER = "cylinder"
     BALL = "ball"
+
+
+class Axis(IntEnum):
+    """The item's axis along which a cylinder lies."""
+
+    X = 0
+    Y = 1
+    Z = 2
+
+    @property
+    def others(self) -> tuple[int, int]:
+        """The numbers of the two axes across it."""
+        return ((1, 2), (0, 2), (0, 1))[self]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,41 +41,62 @@ class Part:
     """One primitive of a piece of furniture or of an object.
 
     `centre_m` is in the item's own frame, whose origin lies below its middle, on what it stands on;
-    `size_m` is the extent along the item's x, y, z; `colour` is red, green, blue in 0..1. A cylinder has
-    equal extents along x and y, a ball three equal ones.
+    `size_m` is the extent along the item's x, y, z. A cylinder lies along `axis` and has equal extents along
+    the other two; a ball has three equal ones.
     """
 
     shape: Shape
-    centre_m: Size
-    size_m: Size
-    colour: Colour
+    centre_m: Vector3
+    size_m: Vector3
+    material: Material
+    axis: Axis = Axis.Z
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(length) and length > 0.0 for length in self.size_m):
             raise BadSceneError(f"a part's sizes must be positive, not {self.size_m!r}")
-        round_enough = self.shape is Shape.BOX or self.size_m[0] == self.size_m[1]
-        if not round_enough or (self.shape is Shape.BALL and self.size_m[0] != self.size_m[2]):
+        around = self.size_m if self.shape is Shape.BALL else [self.size_m[at] for at in self.axis.others]
+        if self.shape is not Shape.BOX and len(set(around)) > 1:
             raise BadSceneError(f"a {self.shape} has equal extents, not {self.size_m!r}")
 
 
-def box(centre_m: Size, size_m: Size, colour: Colour) -> Part:
+def box(centre_m: Vector3, size_m: Vector3, material: Material) -> Part:
     """A box around `centre_m`."""
-    return Part(shape=Shape.BOX, centre_m=centre_m, size_m=size_m, colour=colour)
+    return Part(shape=Shape.BOX, centre_m=centre_m, size_m=size_m, material=material)
 
 
-def cylinder(centre_m: Size, diameter_m: float, height_m: float, colour: Colour) -> Part:
-    """An upright cylinder around `centre_m`."""
+def cylinder(
+    centre_m: Vector3, diameter_m: float, height_m: float, material: Material, axis: Axis = Axis.Z
+) -> Part:
+    """A cylinder around `centre_m`, `height_m` long along `axis`: upright unless told otherwise."""
+    size_m = [diameter_m] * 3
+    size_m[axis] = height_m
     return Part(
-        shape=Shape.CYLINDER, centre_m=centre_m, size_m=(diameter_m, diameter_m, height_m), colour=colour
+        shape=Shape.CYLINDER,
+        centre_m=centre_m,
+        size_m=(size_m[0], size_m[1], size_m[2]),
+        material=material,
+        axis=axis,
     )
 
 
-def ball(centre_m: Size, diameter_m: float, colour: Colour) -> Part:
+def ball(centre_m: Vector3, diameter_m: float, material: Material) -> Part:
     """A ball around `centre_m`."""
-    return Part(shape=Shape.BALL, centre_m=centre_m, size_m=(diameter_m,) * 3, colour=colour)
+    return Part(shape=Shape.BALL, centre_m=centre_m, size_m=(diameter_m,) * 3, material=material)
 
 
-def extent(parts: tuple[Part, ...]) -> tuple[Size, Size]:
+def scaled(parts: tuple[Part, ...], factor: float) -> tuple[Part, ...]:
+    """The parts, `factor` times as large, about the item's origin."""
+    return tuple(
+        replace(
+            part,
+            centre_m=(part.centre_m[0] * factor, part.centre_m[1] * factor, part.centre_m[2] * factor),
+            size_m=(part.size_m[0] * factor, part.size_m[1] * factor, part.size_m[2] * factor),
+        )
+        for part in parts
+    )
+
+
+def extent(parts: tuple[Part, ...]) -> tuple[Vector3, Vector3]:
     """Lowest and highest corner (m, item's frame) of the box around all parts."""
     centres = np.array([part.centre_m for part in parts])
     halves = np.array([part.size_m for part in parts]) / 2.0
@@ -78,9 +112,10 @@ def first_hit_m(parts: tuple[Part, ...], origin_m: Float64, directions: Float64)
     """
     nearest = np.full(len(directions), NEVER)
     for part in parts:
-        hit = _HIT[part.shape](
-            origin_m - np.asarray(part.centre_m), directions, np.asarray(part.size_m) / 2.0
-        )
+        # The formulas are for what stands upright: a lying cylinder is turned, with the rays.
+        order = [*part.axis.others, int(part.axis)]
+        start = (origin_m - np.asarray(part.centre_m))[order]
+        hit = _HIT[part.shape](start, directions[:, order], np.asarray(part.size_m)[order] / 2.0)
         np.minimum(nearest, hit, out=nearest)
     return nearest
 
