@@ -7,6 +7,7 @@ and remappings work, but for those that ROS fixes (`/clock`, `/diagnostics`, `/t
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 from robustnav_msgs_py.errors import ContractError
 
@@ -39,7 +40,10 @@ CHAT_OUT = Qos(name="chat, latched", depth=50, latched=True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Topic:
-    """One topic: `speakers` and `listeners` are executables' names (several may share a topic)."""
+    """One topic: `speakers` and `listeners` are executables' names (several may share a topic).
+
+    `optional`: its message is in no wheel; the topic is there where the message's package is installed.
+    """
 
     name: str
     type: str
@@ -47,6 +51,12 @@ class Topic:
     speakers: tuple[str, ...]
     listeners: tuple[str, ...]
     meaning: str
+    optional: bool = False
+
+    @property
+    def is_available(self) -> bool:
+        """Whether this machine knows the message."""
+        return not self.optional or find_spec(self.type.partition("/")[0]) is not None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,6 +153,32 @@ TOPICS = (
         meaning="where the robot is in the map, and how it moves",
     ),
     Topic(
+        name="/tf",
+        type="tf2_msgs/msg/TFMessage",
+        qos=RECORD,
+        speakers=("sim_bridge",),
+        listeners=(),
+        meaning="map -> odom -> base_link, where tf2_msgs is installed",
+        optional=True,
+    ),
+    Topic(
+        name="/tf_static",
+        type="tf2_msgs/msg/TFMessage",
+        qos=LATCHED,
+        speakers=("sim_bridge",),
+        listeners=(),
+        meaning="base_link -> camera and laser, where tf2_msgs is installed",
+        optional=True,
+    ),
+    Topic(
+        name="bumper",
+        type="std_msgs/msg/Bool",
+        qos=LATCHED,
+        speakers=("sim_bridge",),
+        listeners=(),
+        meaning="whether the robot pushes against something; said when it changes",
+    ),
+    Topic(
         name="map",
         type="nav_msgs/msg/OccupancyGrid",
         qos=LATCHED,
@@ -205,6 +241,22 @@ TOPICS = (
         speakers=("planner",),
         listeners=("sim_bridge",),
         meaning="next place to drive to, as RViz and Nav2 speak it",
+    ),
+    Topic(
+        name="action",
+        type="std_msgs/msg/String",
+        qos=RECORD,
+        speakers=(),
+        listeners=("sim_bridge",),
+        meaning="one discrete action, as `forward`, `left 30`; the robot ends exactly there",
+    ),
+    Topic(
+        name="sim/fault",
+        type="std_msgs/msg/String",
+        qos=RECORD,
+        speakers=(),
+        listeners=("sim_bridge",),
+        meaning="what goes wrong in the simulation, as `silent camera 5`, `clear`",
     ),
     Topic(
         name="initialpose",
@@ -391,10 +443,9 @@ def service(name: str, server: str) -> Service:
 
 
 def spoken_by(executable: str) -> tuple[Topic, ...]:
-    """Topics that `executable` publishes."""
-    return _of(
-        executable, (row for row in TOPICS if executable in row.speakers or EVERY_NODE in row.speakers)
-    )
+    """Topics that `executable` publishes; of the optional ones those that are available here."""
+    said = (row for row in TOPICS if executable in row.speakers or EVERY_NODE in row.speakers)
+    return _of(executable, (row for row in said if row.is_available))
 
 
 def heard_by(executable: str) -> tuple[Topic, ...]:

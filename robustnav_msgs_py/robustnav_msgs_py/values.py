@@ -249,7 +249,11 @@ class VisibleObjects:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ObjectInstance:
-    """Ground truth: one object of the home; the centre in `map`, the size along its own axes."""
+    """Ground truth: one object of the home; the centre in `map`, the size along its own axes.
+
+    `attributes` are what a person could say about it, by name: colour, material, pattern, size, what it
+    stands on, room.
+    """
 
     instance: int
     label: str
@@ -258,6 +262,7 @@ class ObjectInstance:
     z_m: float
     yaw_rad: float
     size_m: tuple[float, float, float]
+    attributes: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -23,7 +23,8 @@ def node_table() -> str:
     rows = ["| node | purpose | hears | says | services |", "|---|---|---|---|---|"]
     for row in contract.NODES:
         hears, serves = contract.heard_by(row.executable), contract.served_by(row.executable)
-        says = [topic for topic in contract.spoken_by(row.executable) if topic.name != "/diagnostics"]
+        # also what needs a package that is not on this machine
+        says = [topic for topic in contract.TOPICS if row.executable in topic.speakers]
         cells = (
             f"`{row.package}/{row.executable}`",
             row.purpose,

@@ -8,7 +8,9 @@ from bags.definitions import ament_prefixes, message_definition
 from robustnav_msgs_py import contract
 
 PREFIXES = (Path(sys.prefix),)
-TYPES = sorted({row.type for row in contract.TOPICS} | {"rcl_interfaces/msg/ParameterEvent"})
+TYPES = sorted(
+    {row.type for row in contract.TOPICS if row.is_available} | {"rcl_interfaces/msg/ParameterEvent"}
+)
 
 
 @pytest.mark.parametrize("message_type", TYPES)

@@ -19,7 +19,7 @@ _DETECTION_SIZE_M = 0.1
 
 
 def objects_to_message(objects: Sequence[ObjectInstance], stamp_ns: int = 0) -> MarkerArray:
-    """One cube per object; its namespace is the class, its id the instance."""
+    """One cube per object; its namespace is the class, its id the instance, its text the attributes."""
     return MarkerArray(
         markers=[
             Marker(
@@ -34,7 +34,7 @@ def objects_to_message(objects: Sequence[ObjectInstance], stamp_ns: int = 0) -> 
                 ),
                 scale=Vector3(x=float(item.size_m[0]), y=float(item.size_m[1]), z=float(item.size_m[2])),
                 color=_OBJECT_COLOR,
-                text=item.label,
+                text="; ".join(f"{name}: {value}" for name, value in item.attributes),
             )
             for item in objects
         ]
@@ -52,9 +52,15 @@ def objects_from_message(message: Any) -> tuple[ObjectInstance, ...]:
             z_m=float(marker.pose.position.z),
             yaw_rad=yaw_rad(marker.pose.orientation),
             size_m=(float(marker.scale.x), float(marker.scale.y), float(marker.scale.z)),
+            attributes=_attributes(marker.text),
         )
         for marker in message.markers
     )
+
+
+def _attributes(text: str) -> tuple[tuple[str, str], ...]:
+    pairs = (pair.partition(": ") for pair in text.split("; ") if pair)
+    return tuple((name, value) for name, separator, value in pairs if separator)
 
 
 def detections_to_markers(detections: Detections, labels: Sequence[str], lifetime_s: int) -> MarkerArray:

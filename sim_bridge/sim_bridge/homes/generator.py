@@ -1,6 +1,5 @@
 """Homes from seeds: the same seed and settings give the same home, on every machine."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -8,39 +7,69 @@ import numpy as np
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.arrangement import arrange
+from sim_bridge.homes.build import build_home
+from sim_bridge.homes.floor_layout import lay_out
 from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furnishing import furnish
-from sim_bridge.homes.home import Home
-from sim_bridge.homes.objects import LABELS
-from sim_bridge.homes.rooms import ROOM_PLANS, lay_out
-from sim_bridge.homes.scene_check import check_home
+from sim_bridge.homes.furniture.catalogue import build_furniture
+from sim_bridge.homes.home import Furniture, Home
+from sim_bridge.homes.room_programmes import ROOM_COUNTS, Difficulty, draw_programme, room_count_of
+from sim_bridge.homes.scene import Scene
+from sim_bridge.homes.scene_check import check_passages
+from sim_bridge.homes.walls import Shell, build_shell
 from sim_bridge.robot.obstacles import ClearanceGrid
 
 DRAWS = 60
-OBJECT_COUNT = (14, 20)
-MIN_OBJECTS, MAX_OBJECTS = 12, 24
+OBJECTS_PER_ROOM = (5, 7)
+MIN_OBJECTS, MAX_OBJECTS = 4, 80
 START_CLEARANCE_M = 0.40
 START_HEADINGS = 12
+# Coordinates are rounded to what a scene file keeps.
+DECIMALS = 6
 
 
-def generate_home(seed: int, *, rooms: int | None = None, objects: int | None = None) -> Home:
-    """A furnished home with `rooms` (3..6) rooms and `objects` (12..24) objects; drawn where None.
+def generate_home(
+    seed: int,
+    *,
+    difficulty: Difficulty = Difficulty.MEDIUM,
+    rooms: int | None = None,
+    objects: int | None = None,
+    look_alikes: str = "",
+) -> Home:
+    """The home that `generate_scene` describes, built."""
+    return build_home(
+        generate_scene(seed, difficulty=difficulty, rooms=rooms, objects=objects, look_alikes=look_alikes)
+    )
 
-    Raises BadSceneError where the numbers are out of range or no draw of the seed holds together.
+
+def generate_scene(
+    seed: int,
+    *,
+    difficulty: Difficulty = Difficulty.MEDIUM,
+    rooms: int | None = None,
+    objects: int | None = None,
+    look_alikes: str = "",
+) -> Scene:
+    """A furnished home: easy ones have 1 room, medium 3 or 4, hard 6 to 10, unless `rooms` says how many.
+
+    `objects`: how many small objects (4..80); None: five to seven a room. `look_alikes`: a class of which
+    the home holds at least three. Raises BadSceneError where the numbers are out of range or no draw of the
+    seed holds together.
     """
     if seed < 0:
         raise BadSceneError(f"a seed must not be negative, not {seed!r}")
     if objects is not None and not MIN_OBJECTS <= objects <= MAX_OBJECTS:
         raise BadSceneError(f"a home holds {MIN_OBJECTS}..{MAX_OBJECTS} objects, not {objects!r}")
-    if rooms is not None and rooms not in ROOM_PLANS:
-        raise BadSceneError(f"a home has {min(ROOM_PLANS)}..{max(ROOM_PLANS)} rooms, not {rooms!r}")
+    if rooms is not None and rooms not in ROOM_COUNTS:
+        raise BadSceneError(f"a home has {min(ROOM_COUNTS)}..{max(ROOM_COUNTS)} rooms, not {rooms!r}")
     rng = np.random.default_rng(seed)
-    room_count = rooms if rooms is not None else int(rng.choice(list(ROOM_PLANS)))
-    object_count = objects if objects is not None else int(rng.integers(OBJECT_COUNT[0], OBJECT_COUNT[1] + 1))
+    room_count = rooms or room_count_of(rng, difficulty)
+    low, high = (room_count * number for number in OBJECTS_PER_ROOM)
+    object_count = objects or min(MAX_OBJECTS, int(rng.integers(low, high + 1)))
     last = ""
     for _ in range(DRAWS):
         try:
-            return _draw(rng, seed, room_count, object_count)
+            return _draw(rng, seed, room_count, object_count, look_alikes)
         except BadSceneError as problem:
             last = str(problem)
     raise BadSceneError(
@@ -49,36 +78,36 @@ def generate_home(seed: int, *, rooms: int | None = None, objects: int | None = 
     )
 
 
-def _draw(rng: np.random.Generator, seed: int, room_count: int, object_count: int) -> Home:
-    layout = lay_out(rng, room_count)
-    furniture = furnish(rng, layout, RESOLUTION_M)
-    home = Home(
+def _draw(rng: np.random.Generator, seed: int, room_count: int, object_count: int, look_alikes: str) -> Scene:
+    layout = lay_out(rng, draw_programme(rng, room_count))
+    shell = build_shell(layout.rooms, layout.doors, layout.windows)
+    pieces = furnish(rng, shell)
+    furniture = tuple(build_furniture(piece) for piece in pieces)
+    scene = Scene(
         name=f"home-{seed}",
         seed=seed,
-        bounds=layout.bounds,
         rooms=layout.rooms,
         doors=layout.doors,
-        walls=layout.walls,
-        furniture=furniture,
-        objects=arrange(rng, furniture, object_count),
-        labels=LABELS,
-        start=Pose2D(x_m=0.0, y_m=0.0),
+        windows=layout.windows,
+        furniture=pieces,
+        objects=arrange(rng, furniture, object_count, look_alikes),
+        start=_start(rng, shell, furniture),
     )
-    home = _with_start(rng, home)
-    check_home(home)
-    return home
+    check_passages(build_home(scene))
+    return scene
 
 
-def _with_start(rng: np.random.Generator, home: Home) -> Home:
-    grid = ClearanceGrid(home.bounds, RESOLUTION_M).with_rects(home.obstacles())
+def _start(rng: np.random.Generator, shell: Shell, furniture: tuple[Furniture, ...]) -> Pose2D:
+    obstacles = [wall.base for wall in shell.walls if wall.z_min_m == 0.0]
+    obstacles += [piece.footprint for piece in furniture]
+    grid = ClearanceGrid(shell.bounds, RESOLUTION_M).with_rects(obstacles)
     rows, columns = np.nonzero(grid.cells_m >= START_CLEARANCE_M)
     if not len(rows):
         raise BadSceneError(f"the robot has nowhere to start {START_CLEARANCE_M} m away from everything")
     at = int(rng.integers(len(rows)))
     heading = int(rng.integers(START_HEADINGS)) * math.tau / START_HEADINGS
-    start = Pose2D(
-        x_m=round(float(grid.x_m[columns[at]]), 6),
-        y_m=round(float(grid.y_m[rows[at]]), 6),
+    return Pose2D(
+        x_m=round(float(grid.x_m[columns[at]]), DECIMALS),
+        y_m=round(float(grid.y_m[rows[at]]), DECIMALS),
         yaw_rad=math.remainder(heading, math.tau),
     )
-    return dataclasses.replace(home, start=start)
