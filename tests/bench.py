@@ -8,7 +8,7 @@ from rclpy.node import Node
 
 from robustnav_msgs_py import contract
 from robustnav_nodes.graph import qos
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.spin import Spinner
 
 DEADLINE_S = 20.0

@@ -14,7 +14,7 @@ from rclpy.subscription import Subscription
 from bags.definitions import ament_prefixes, message_definition
 from bags.offered_qos import INFINITE_NS, OfferedQos, Request, request_for
 from bags.recording import Recording
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 
 Observer = Callable[[bytes], None]
 

@@ -20,7 +20,6 @@ Services: `~/reset` (back to the start; time goes on), `~/pause`, `~/step` (one 
 """
 
 import dataclasses
-import time
 from typing import TYPE_CHECKING, Any
 
 from robustnav_msgs_py.conversions import (
@@ -171,11 +170,11 @@ class SimBridge(GraphNode[SimParameters]):
         """Make the steps that wall time asks for, as many as fit into one turn."""
         if self._paused:
             return
-        began_s = time.monotonic()
+        began_s = self.steady_s()
         for _ in range(self._pace.due(began_s, self.parameters.real_time_factor)):
             self._step()
             self._pace.done()
-            if time.monotonic() - began_s > TURN_S:
+            if self.steady_s() - began_s > TURN_S:
                 break
 
     def _step(self) -> None:

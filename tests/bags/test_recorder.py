@@ -29,7 +29,7 @@ from bags.reader import Bag, open_bag
 from bags.recorder import Recorder
 from robustnav_msgs_py.conversions import clock_to_message, record_to_message
 from robustnav_msgs_py.records import Episode
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 
 LIMIT_S = 20.0
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -21,10 +21,13 @@ from bags.reader import open_bag
 from bags.writer import LARGEST_MANIFEST_RECORD, BagWriter
 from robustnav_msgs_py import contract
 from robustnav_msgs_py.errors import BadFileError
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 
 PREFIXES = (Path(sys.prefix),)
-TYPES = sorted({row.type for row in contract.TOPICS} | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"})
+TYPES = sorted(
+    {row.type for row in contract.TOPICS if row.is_available}
+    | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"}
+)
 LATCHED = OfferedQos(durability="transient_local", history="unknown", depth=0)
 
 

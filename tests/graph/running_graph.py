@@ -15,7 +15,7 @@ from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.records import Decision, SearchPhase, SearchState
 from robustnav_nodes.graph import qos
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.processes import STOPPED_FIRST, ProcessGraph
 from robustnav_nodes.graph.search_graph import RunPlan
 from robustnav_nodes.graph.spin import Spinner

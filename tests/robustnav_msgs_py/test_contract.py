@@ -4,7 +4,7 @@ import pytest
 
 from robustnav_msgs_py import contract
 from robustnav_msgs_py.errors import ContractError
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 
 EXECUTABLES = {row.executable for row in contract.NODES}
 

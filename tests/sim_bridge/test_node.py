@@ -30,7 +30,7 @@ from robustnav_msgs_py.records import Episode
 from robustnav_msgs_py.values import Odometry, Pose2D, StampedPose, Velocity
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.environment import prepare_environment
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 from sim_bridge.node import SimBridge
 
 PATIENCE_S = 20.0

@@ -40,6 +40,7 @@ from robustnav_msgs_py.conversions.motion import (
 from robustnav_msgs_py.conversions.scan import scan_from_message, scan_to_message
 from robustnav_msgs_py.conversions.stamps import (
     NANOSECONDS,
+    clock_from_message,
     clock_to_message,
     stamp_from_message,
     stamp_to_message,
@@ -63,6 +64,7 @@ __all__ = [
     "belief_to_message",
     "camera_from_message",
     "camera_to_message",
+    "clock_from_message",
     "clock_to_message",
     "color_from_message",
     "color_to_message",

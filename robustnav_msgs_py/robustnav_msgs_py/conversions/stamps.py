@@ -28,3 +28,8 @@ def header(stamp_ns: int, frame_id: str) -> Header:
 def clock_to_message(stamp_ns: int) -> Clock:
     """Simulated time as a /clock message."""
     return Clock(clock=stamp_to_message(stamp_ns))
+
+
+def clock_from_message(message: Any) -> int:
+    """Simulated time, nanoseconds."""
+    return stamp_from_message(message.clock)

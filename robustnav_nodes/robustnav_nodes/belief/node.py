@@ -1,7 +1,6 @@
 """The belief node: detections and poses in, where the target may be out."""
 
 import sys
-import time
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -73,10 +72,10 @@ class Belief(GraphNode[BeliefParameters]):
             check_frame(odometry, self._view.frame_id)
 
     def _on_map(self, floor_map: OccupancyMap) -> None:
-        self._floor.heard_map(floor_map, time.monotonic())
+        self._floor.heard_map(floor_map, self.steady_s())
 
     def _build(self) -> None:
-        inputs = None if self._builder.busy else self._floor.take(time.monotonic())
+        inputs = None if self._builder.busy else self._floor.take(self.steady_s())
         if inputs is not None:
             self._builder.submit(partial(build_camera_view, *inputs, self.parameters), self._on_view)
 

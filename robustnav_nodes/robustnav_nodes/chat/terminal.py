@@ -15,7 +15,7 @@ from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.environment import prepare_environment
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.spin import Spinner, stop_on_signals
 
 LAST_ANSWERS_S = 2.0

@@ -4,41 +4,26 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from importlib import import_module
 from typing import Any, ClassVar, Generic, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import ParameterDescriptor
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.subscription import Subscription
-from rclpy.timer import Timer
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from robustnav_msgs_py import contract
 from robustnav_msgs_py.conversions import status_to_message
 from robustnav_msgs_py.conversions.stamps import header
 from robustnav_msgs_py.errors import ContractError, RobustnavError
 from robustnav_msgs_py.values import ERROR, WARN
-from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.health import Health
 from robustnav_nodes.graph.node_parameters import NodeParameters
-from robustnav_nodes.graph.worker import Worker
+from robustnav_nodes.graph.wiring import Outlet, RosWiring, Wiring, Work
 
 P = TypeVar("P")
 V = TypeVar("V")
 
 DIAGNOSTICS_PERIOD_S = 1.0
-
-
-def message_class(name: str) -> Any:
-    """The class of a type as ROS writes it: "std_msgs/msg/String", "std_srvs/srv/Trigger"."""
-    package, kind, type_name = name.split("/")
-    return getattr(import_module(f"{package}.{kind}"), type_name)
 
 
 class GraphNode(LifecycleNode, Generic[P]):
@@ -52,20 +37,20 @@ class GraphNode(LifecycleNode, Generic[P]):
     Callbacks run in the executor's thread and only while the node is active. A RobustnavError raised there
     (a bad message) is logged once and shown in /diagnostics; any other exception is logged with its
     traceback; the node lives on.
+
+    `wiring` makes what joins the node to the others: ROS, unless a run in lock-step brings its own.
     """
 
     executable: ClassVar[str]
     declaration: ClassVar[type]
     listen_on_s: ClassVar[float] = 0.0
 
-    def __init__(self, **node_options: Any) -> None:
+    def __init__(
+        self, *, wiring: Callable[["GraphNode[Any]"], Wiring] = RosWiring, **node_options: Any
+    ) -> None:
         super().__init__(self.executable, enable_logger_service=True, **node_options)
-        self.health = Health(self._log)
-        self._timers_made: list[Timer] = []
-        self._subscriptions_made: list[Subscription] = []
-        self._publishers_made: list[LifecyclePublisher] = []
-        self._services_made: list[Any] = []
-        self._workers: list[Worker] = []
+        self._wiring = wiring(self)
+        self.health = Health(self._log, self.steady_s)
         self._held: dict[str, deque[Callable[[], None]]] = {}
         self._waiting_for: list[str] = []
         self._active = False
@@ -80,11 +65,11 @@ class GraphNode(LifecycleNode, Generic[P]):
             super().destroy_node()  # or its shared memory would stay behind; the subclass is not made yet
             raise
         self._service_change_state.callback = self._on_change_state
-        self._diagnostics = self.create_publisher(
-            DiagnosticArray, "/diagnostics", qos.offered(contract.topic("/diagnostics").qos)
-        )
-        steady = Clock(clock_type=ClockType.STEADY_TIME)  # diagnostics go on while simulated time stands
-        self.create_timer(DIAGNOSTICS_PERIOD_S, self._publish_diagnostics, clock=steady)
+        # A wiring of its own, which clean-up leaves alone: diagnostics go on in every state, and while
+        # simulated time stands.
+        always = wiring(self)
+        self._diagnostics = always.publisher(contract.topic("/diagnostics"), managed=False)
+        always.timer(DIAGNOSTICS_PERIOD_S, self._publish_diagnostics, steady=True)
         for name in self._bound.unknown_overrides():
             self.health.problem(f"parameter {name}", "there is no such parameter; is it misspelt?")
 
@@ -124,23 +109,18 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def now_ns(self) -> int:
         """ROS time (simulated where `use_sim_time` is set), nanoseconds."""
-        return int(self.get_clock().now().nanoseconds)
+        return self._wiring.now_ns()
 
-    def publisher(self, name: str) -> LifecyclePublisher:
+    def steady_s(self) -> float:
+        """Wall time that never jumps, seconds from an arbitrary start."""
+        return self._wiring.steady_s()
+
+    def publisher(self, name: str) -> Outlet:
         """A publisher of a topic that the contract says this node speaks on."""
         row = contract.topic(name)
         if row not in contract.spoken_by(self.executable):
             raise ContractError(f"{self.executable!r} is no speaker of {name!r} in the contract")
-        made = self.create_lifecycle_publisher(
-            message_class(row.type),
-            name,
-            qos.offered(row.qos),
-            # a QoS event that is still queued when its entity is destroyed raises out of the executor
-            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        )
-        self._publishers_made.append(made)
-        return made
+        return self._wiring.publisher(row)
 
     def subscribe(self, name: str, read: Callable[[Any], V], use: Callable[[V], object]) -> None:
         """Hear a topic of the contract: `read` makes the value (a conversion), `use` takes it.
@@ -164,16 +144,7 @@ class GraphNode(LifecycleNode, Generic[P]):
                 held = self._held.setdefault(name, deque(maxlen=row.qos.depth))
                 held.append(partial(self._guard, name, hear, message))
 
-        self._subscriptions_made.append(
-            self.create_subscription(
-                message_class(row.type),
-                name,
-                hear_or_hold,
-                qos.heard(row.qos),
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # see `publisher`
-                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            )
-        )
+        self._wiring.subscription(row, hear_or_hold)
 
     def serve(self, name: str, answer: Callable[[Any, Any], Any]) -> None:
         """Offer a service of the contract; `answer(request, response)` returns the response.
@@ -197,16 +168,13 @@ class GraphNode(LifecycleNode, Generic[P]):
                 self._report(name, error)
             return response
 
-        self._services_made.append(self.create_service(message_class(row.type), name, respond))
+        self._wiring.service(name, row.type, respond)
 
     def every(self, period_s: float, work: Callable[[], None], *, steady: bool = False) -> None:
         """Call `work` each `period_s` seconds of ROS time (or of wall time where `steady`)."""
-        clock = Clock(clock_type=ClockType.STEADY_TIME) if steady else self.get_clock()
-        self._timers_made.append(
-            self.create_timer(period_s, partial(self._guard, f"timer {work.__name__}", work), clock=clock)
-        )
+        self._wiring.timer(period_s, partial(self._guard, f"timer {work.__name__}", work), steady=steady)
 
-    def worker(self, name: str, failed: Callable[[], None] = lambda: None) -> Worker:
+    def worker(self, name: str, failed: Callable[[], None] = lambda: None) -> Work:
         """A thread for long work, whose results come back to the executor's thread.
 
         A job that raises is reported like a callback; then `failed` is called.
@@ -216,15 +184,7 @@ class GraphNode(LifecycleNode, Generic[P]):
             self._report(name, error)
             failed()
 
-        made = Worker(self.call_soon, partial(self._guard, name), report)
-        self._workers.append(made)
-        return made
-
-    def call_soon(self, work: Callable[[], None]) -> None:
-        """Run `work` in the executor's thread; may be called from any thread."""
-        executor = self.executor
-        if executor is not None:
-            executor.create_task(work)
+        return self._wiring.worker(partial(self._guard, name), report)
 
     # Life cycle.
 
@@ -293,26 +253,9 @@ class GraphNode(LifecycleNode, Generic[P]):
             return TransitionCallbackReturn.FAILURE
 
     def _take_down(self) -> None:
-        for worker in self._workers:
-            worker.close()
-        for timer in self._timers_made:
-            self.destroy_timer(timer)
-        for subscription in self._subscriptions_made:
-            self.destroy_subscription(subscription)
-        for service in self._services_made:
-            self.destroy_service(service)
-        for publisher in self._publishers_made:
-            self.destroy_lifecycle_publisher(publisher)
-        for made in (
-            self._workers,
-            self._timers_made,
-            self._subscriptions_made,
-            self._services_made,
-            self._publishers_made,
-            self._waiting_for,
-            self._held,
-        ):
-            made.clear()
+        self._wiring.take_down()
+        self._waiting_for.clear()
+        self._held.clear()
 
     def _on_change_state(self, request: Any, response: Any) -> Any:
         # rclpy lets an impossible transition raise out of the executor, which ends the node without a reply
@@ -365,13 +308,12 @@ class GraphNode(LifecycleNode, Generic[P]):
         """Say so where somebody speaks on a latched topic without latching: DDS then delivers nothing."""
         if not contract.topic(name).qos.latched:
             return
-        for publisher in self.get_publishers_info_by_topic(self.resolve_topic_name(name)):
-            if publisher.qos_profile.durability is DurabilityPolicy.VOLATILE:
-                self.health.problem(
-                    name,
-                    f"{publisher.node_name!r} publishes {name} volatile, so it is not heard: publish it "
-                    f"transient local, or set the qos_overrides of {name} to volatile",
-                )
+        for speaker in self._wiring.volatile_speakers(contract.topic(name)):
+            self.health.problem(
+                name,
+                f"{speaker!r} publishes {name} volatile, so it is not heard: publish it "
+                f"transient local, or set the qos_overrides of {name} to volatile",
+            )
 
     def _log(self, level: int, sentence: str) -> None:
         logger = self.get_logger()

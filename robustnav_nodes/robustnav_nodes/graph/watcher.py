@@ -11,7 +11,7 @@ from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.records import Decision, DialogueState, SearchState
 from robustnav_nodes.graph import qos
-from robustnav_nodes.graph.node import message_class
+from robustnav_nodes.graph.message_class import message_class
 
 
 class RunWatcher(Node):

@@ -1,7 +1,6 @@
 """The planner node: belief and pose in, the next place to look from out."""
 
 import sys
-import time
 from dataclasses import replace
 from enum import StrEnum
 from functools import partial
@@ -88,11 +87,11 @@ class Planner(GraphNode[PlannerParameters]):
     # The floor.
 
     def _on_map(self, floor_map: OccupancyMap) -> None:
-        self._floor.heard_map(floor_map, time.monotonic())
+        self._floor.heard_map(floor_map, self.steady_s())
 
     def _build(self) -> None:
         here = self._poses.latest
-        inputs = None if self._builder.busy or here is None else self._floor.take(time.monotonic())
+        inputs = None if self._builder.busy or here is None else self._floor.take(self.steady_s())
         if inputs is not None and here is not None:
             folder = user_cache_folder() if self.parameters.search_space_cache else None
             build = partial(cached_search_space, *inputs, self.parameters, here.pose, folder)
@@ -129,6 +128,7 @@ class Planner(GraphNode[PlannerParameters]):
             parameters=self.parameters,
             rng=np.random.default_rng([self.parameters.seed, self._episode]),
             episode=self._episode,
+            clock=self.steady_s,
         )
         self._say_state(self._session.state)
         # the belief about this target begins when the belief node hears of it: leave it the time

@@ -1,7 +1,6 @@
 """The simulated user node: a person on the chat topics."""
 
 import sys
-import time
 
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.values import ObjectInstance
@@ -30,7 +29,7 @@ class SimulatedUser(GraphNode[SimulatedUserParameters]):
 
     def activate(self) -> None:
         """Begin to think about what to ask for."""
-        self._since_s = time.monotonic()
+        self._since_s = self.steady_s()
 
     def _on_objects(self, objects: tuple[ObjectInstance, ...]) -> None:
         target = self.parameters.target or choose_target(objects, self.parameters.seed)
@@ -40,9 +39,9 @@ class SimulatedUser(GraphNode[SimulatedUserParameters]):
     def _wait(self) -> None:
         if self._person is not None:
             self.health.figure("mood", self._person.mood)
-            thought_s = time.monotonic() - self._since_s
+            thought_s = self.steady_s() - self._since_s
             if thought_s >= self.parameters.ask_after_s and self._lines.get_subscription_count():
-                self._say(self._person.wait(time.monotonic()))
+                self._say(self._person.wait(self.steady_s()))
 
     def _on_line(self, line: str) -> None:
         if self._person is not None:
