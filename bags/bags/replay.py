@@ -191,14 +191,15 @@ class _Session:
         recorded: dict[str, list[RawMessage]] = {topic: [] for topic in self._outputs}
         for raw in self._bag.raw_messages(list(self._outputs)):
             recorded[raw.topic].append(raw)
-        topics = (
-            _compared(topic, row, recorded[topic], self._said.get(topic, []))
-            for topic, row in sorted(self._outputs.items())
-        )
+        kept = {row.name for row in self._bag.topics}  # a recorder may leave topics out
         return Replay(
             nodes=self._names,
             inputs=self._inputs,
-            topics=tuple(topic for topic in topics if topic.recorded or topic.replayed),
+            topics=tuple(
+                _compared(topic, row, recorded[topic], self._said.get(topic, []))
+                for topic, row in sorted(self._outputs.items())
+                if topic in kept
+            ),
         )
 
     def close(self) -> None:

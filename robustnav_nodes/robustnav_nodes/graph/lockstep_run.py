@@ -36,7 +36,8 @@ class LockstepRun:
         self.lockstep = Lockstep(watch)
         self._context = Context()
         rclpy.init(args=[], context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        arguments = ["--ros-args", *plan.arguments(parameter_files)]
+        # who is up and who is down is no news where they all are one
+        arguments = ["--ros-args", "--log-level", "warn", *plan.arguments(parameter_files)]
         self.nodes: list[GraphNode[Any]] = []
         try:
             for row in plan.nodes:
