@@ -28,6 +28,7 @@ app.add_typer(data_app, name="data")
 
 DEMO_SPEED = 4.0
 DEMO_LIMIT_S = 110.0  # at that speed; slower ones take longer
+LOCKSTEP_LIMIT_S = 600.0  # of simulated time
 MAX_SEED = 2**31 - 1
 
 
@@ -60,6 +61,10 @@ def demo(
     bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/demo_DATE")] = None,
     target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
     speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds a second")] = DEMO_SPEED,
+    lockstep: Annotated[
+        bool,
+        typer.Option("--lockstep", help="in one process, as fast as it goes, the same each time"),
+    ] = False,
 ) -> None:
     """Run one search in a simulated home, record it, and sum it up from the bag."""
     from bags.demo_summary import show_summary
@@ -68,16 +73,27 @@ def demo(
 
     console = _console()
     folder = _new_bag(bag, "demo")
+    logs = folder.parent / f"{folder.name}_logs"
     human = user is User.HUMAN
+    if human and lockstep:
+        raise BadParameterError("a person cannot keep step with --lockstep; leave one of the two out")
     plan = RunPlan(
         seed=seed,
         with_simulated_user=not human,
         bag=folder,
         parameters={
-            "sim_bridge": {"real_time_factor": speed},
+            "sim_bridge": {"real_time_factor": 1.0 if lockstep else speed},
             "simulated_user": {"target": target},
         },
     )
+    if lockstep:
+        from bags.lockstep_demo import run_lockstep_demo
+
+        console.print(f"robustnav demo: {scenario.value} in a simulated home, seed {seed}, in lock-step")
+        end = run_lockstep_demo(plan, bag=folder, console=console, log_folder=logs, limit_s=LOCKSTEP_LIMIT_S)
+        if not show_summary(console, end, folder, logs):
+            raise typer.Exit(1)
+        return
     console.print(
         f"robustnav demo: {scenario.value} in a simulated home, seed {seed}, {speed:g} times real time"
     )
@@ -87,7 +103,6 @@ def demo(
         )
     else:
         console.print("[dim]starting 8 nodes, a process each; the first time, numba compiles the planner[/]")
-    logs = folder.parent / f"{folder.name}_logs"
     limit_s = DEMO_LIMIT_S * max(1.0, DEMO_SPEED / speed)
     end = Demo(plan, console=console, log_folder=logs, timeout_s=None if human else limit_s).run()
     if not show_summary(console, end, folder, logs):
