@@ -27,7 +27,7 @@ class HoleMaker:
     def __init__(self, model: CameraModel, share: float) -> None:
         self._share = share
         self._model = model
-        self._blobs = Resolution(model.height, model.width, BLOB_PX)
+        self._blobs = Resolution(model.height, model.width, 1, BLOB_PX)
         self._column = np.arange(model.width, dtype=np.float32)
         x = (self._column - np.float32(model.cx)) / np.float32(model.fx)
         y = (np.arange(model.height, dtype=np.float32) - np.float32(model.cy)) / np.float32(model.fy)
@@ -46,7 +46,7 @@ class HoleMaker:
             return np.zeros(depth_m.shape, dtype=np.bool_)
         inverse = np.divide(1.0, depth_m, out=np.zeros_like(depth_m), where=finite)
         light = self._light(inverse, rng)
-        light[~finite] = np.inf
+        np.copyto(light, np.inf, where=~finite)
         faintest = np.partition(light, count - 1, axis=None)[count - 1]
         return np.asarray((light <= faintest) & finite)
 
@@ -71,12 +71,12 @@ class HoleMaker:
         cube *= cube
         light: Float32 = np.divide(cube, normal_squared, out=cube, where=normal_squared > 0.0)
         light *= self._brightness(rng)
-        light[self._in_shadow(inverse)] *= np.float32(SHADOW_LIGHT)
+        np.multiply(light, np.float32(SHADOW_LIGHT), out=light, where=self._in_shadow(inverse))
         return light
 
     def _brightness(self, rng: np.random.Generator) -> Float32:
         """How bright surfaces are, squared: blobs of a few pixels, float32 [height, width]."""
-        field = normals(rng, (*self._blobs.shape, 1)) * np.float32(2.0 * BLOB_SPREAD)
+        field = normals(rng, self._blobs.shape) * np.float32(2.0 * BLOB_SPREAD)
         return self._blobs.enlarged(np.exp(field))[:, :, 0]
 
     def _in_shadow(self, inverse: Float32) -> Bool:

@@ -58,7 +58,7 @@ class ImageSensor:
         self._seed = seed
         self._is_noisy = degradation.darkness > 0.0 or degradation.noise > 0.0
         self._resolution = (
-            Resolution(model.height, model.width, degradation.downscale)
+            Resolution(model.height, model.width, CHANNELS, degradation.downscale)
             if degradation.downscale > 1
             else None
         )
@@ -67,8 +67,8 @@ class ImageSensor:
         every_level = np.arange(WHITE_LEVEL * STEPS_PER_LEVEL + 1).astype(np.float32)
         every_level /= STEPS_PER_LEVEL
         self._noise_of_level = noise_levels(degradation, every_level).astype(np.float32)
-        rows, columns = self._resolution.shape if self._resolution else (model.height, model.width)
-        pattern = normals(frame_rng(seed, NO_FRAME, FIXED_STREAM), (rows, columns, CHANNELS))
+        shape = self._resolution.shape if self._resolution else (model.height, model.width, CHANNELS)
+        pattern = normals(frame_rng(seed, NO_FRAME, FIXED_STREAM), shape)
         self._pattern = pattern * np.float32(gain * degradation.noise * FIXED_SHARE)
 
     def sensed(self, image: ColorImage, frame: int) -> ColorImage:
