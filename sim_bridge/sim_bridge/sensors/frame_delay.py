@@ -49,7 +49,6 @@ class FrameDelay(Generic[Frame]):
         self._jitter_s = jitter_s
         self._seed = seed
         self._line: deque[tuple[int, Frame]] = deque(maxlen=most)
-        self._last_due_ns = 0
         self.lost = 0
 
     def __len__(self) -> int:
@@ -64,9 +63,8 @@ class FrameDelay(Generic[Frame]):
         if self._jitter_s > 0.0:
             jitter_s = frame_rng(self._seed, number, DELAY_STREAM).uniform(0.0, self._jitter_s)
         due_ns = now_ns + round((self._delay_s + jitter_s) * NS_PER_S)
-        self._last_due_ns = max(self._last_due_ns, due_ns)
         self.lost += len(self._line) == self._line.maxlen
-        self._line.append((self._last_due_ns, frame))
+        self._line.append((due_ns, frame))
 
     def due(self, now_ns: int) -> list[Frame]:
         """The frames that have arrived by `now_ns` and were not given out yet, in the order sent."""
@@ -78,5 +76,4 @@ class FrameDelay(Generic[Frame]):
     def reset(self) -> None:
         """Forget what is under way."""
         self._line.clear()
-        self._last_due_ns = 0
         self.lost = 0

@@ -60,10 +60,11 @@ def test_a_full_line_loses_its_oldest_and_counts_them() -> None:
 
 
 def test_a_reset_forgets_what_is_under_way() -> None:
-    line: FrameDelay[int] = FrameDelay(1.0, 0.0, seed=1)
+    line: FrameDelay[int] = FrameDelay(1.0, 0.0, seed=1, most=1)
+    line.add(0, 0, 0)
     line.add(1, 1, 5_000 * MS)
     line.reset()
-    assert len(line) == 0
+    assert len(line) == line.lost == 0
     line.add(2, 2, 0)
     assert line.due(1_000 * MS) == [2]
 

@@ -57,8 +57,8 @@ def test_an_arc_by_hand() -> None:
 
 
 def test_the_mean_is_rounded_and_takes_the_middle_stamp() -> None:
-    mean = mean_image([image(10, stamp_ns=1), image(20, stamp_ns=2), image(31, stamp_ns=3)])
-    assert (mean.pixels == 20).all()
+    mean = mean_image([image(10, stamp_ns=1), image(20, stamp_ns=2), image(32, stamp_ns=3)])
+    assert (mean.pixels == 21).all()
     assert mean.stamp_ns == 2
     assert (mean_image([image(255)] * MOST_PICTURES).pixels == 255).all()
     alone = image(7)
