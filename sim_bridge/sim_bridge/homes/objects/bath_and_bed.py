@@ -21,11 +21,11 @@ def pillow(main: Material) -> tuple[Part, ...]:
 
 def towel(main: Material) -> tuple[Part, ...]:
     """A towel folded to three layers, the folds at +x."""
-    layers = ((0.0225, 0.0, 0.34), (0.065, 0.006, 0.33), (0.1075, -0.004, 0.335))
+    layers = ((0.021, 0.0, 0.34), (0.0635, 0.006, 0.33), (0.106, -0.004, 0.335))
     return (
         *(box((-0.02 + x, 0.0, z), (0.22, width, 0.042), main) for z, x, width in layers),
         *(cylinder((0.09 + x, 0.0, z), 0.042, width - 0.004, main, Axis.Y) for z, x, width in layers),
-        *(box((-0.02, y, 0.128), (0.19, 0.022, 0.004), WHITE) for y in (-0.13, -0.09, 0.09, 0.13)),
+        *(box((-0.02, y, 0.1265), (0.19, 0.022, 0.004), WHITE) for y in (-0.13, -0.09, 0.09, 0.13)),
     )
 
 
@@ -35,7 +35,7 @@ def toilet_roll(main: Material) -> tuple[Part, ...]:
         cylinder((0.0, 0.0, 0.07), 0.14, 0.12, main, Axis.Y),
         cylinder((0.0, 0.0, 0.07), 0.05, 0.126, TAN_WOOD, Axis.Y),
         box((0.069, 0.0, 0.04), (0.004, 0.116, 0.08), main),
-        box((0.10, 0.0, 0.002), (0.064, 0.116, 0.004), main),
+        box((0.101, 0.0, 0.002), (0.064, 0.112, 0.004), main),
     )
 
 
@@ -48,8 +48,8 @@ def soap_dispenser(main: Material) -> tuple[Part, ...]:
         cylinder((0.0, 0.0, 0.165), 0.038, 0.024, STEEL),
         cylinder((0.0, 0.0, 0.195), 0.014, 0.04, STEEL),
         cylinder((0.0, 0.0, 0.218), 0.048, 0.016, STEEL),
-        box((0.045, 0.0, 0.219), (0.075, 0.020, 0.014), STEEL),
-        box((0.077, 0.0, 0.205), (0.012, 0.016, 0.022), STEEL),
+        box((0.045, 0.0, 0.2175), (0.075, 0.020, 0.010), STEEL),
+        box((0.079, 0.0, 0.205), (0.012, 0.016, 0.022), STEEL),
     )
 
 

@@ -21,7 +21,7 @@ BLOSSOM = material("orange fabric")
 POLLEN = material("yellow fabric")
 
 # A picture on its canvas: where in depth its background ends, and how thick a layer of paint is.
-CANVAS_X_M = 0.016
+CANVAS_X_M = 0.010
 PAINT_M = 0.003
 
 
@@ -49,7 +49,7 @@ def vase(main: Material) -> tuple[Part, ...]:
         ball((0.0, 0.0, 0.09), 0.15, main),
         cylinder((0.0, 0.0, 0.175), 0.08, 0.06, main),
         cylinder((0.0, 0.0, 0.205), 0.11, 0.012, main),
-        *(cylinder((x, y, 0.28), 0.012, 0.16, LEAF) for x, y in stems),
+        *(cylinder((x, y, 0.285), 0.012, 0.15, LEAF) for x, y in stems),
         *(ball(centre, 0.085, BLOSSOM) for centre in blossoms),
         *(ball((x, y, z + 0.03), 0.045, POLLEN) for x, y, z in blossoms),
     )
@@ -74,9 +74,9 @@ def clock(main: Material) -> tuple[Part, ...]:
     return (
         cylinder((0.0, 0.0, 0.13), 0.22, 0.08, main, Axis.X),
         cylinder((0.0395, 0.0, 0.13), 0.18, 0.005, WHITE, Axis.X),
-        box((0.0425, 0.0, 0.16), (0.004, 0.014, 0.075), DARK),
-        box((0.0425, -0.027, 0.13), (0.004, 0.066, 0.014), DARK),
-        *(box((0.0415, 0.0, z), (0.004, 0.014, 0.014), DARK) for z in (0.055,)),
+        box((0.0425, 0.0, 0.162), (0.004, 0.014, 0.075), DARK),
+        box((0.0430, -0.030, 0.13), (0.006, 0.066, 0.014), DARK),
+        box((0.0415, 0.0, 0.055), (0.004, 0.014, 0.014), DARK),
         *(box((0.0415, y, 0.13), (0.004, 0.014, 0.013), DARK) for y in (-0.075, 0.075)),
         *(ball((0.0, y, 0.235), 0.085, STEEL) for y in (-0.065, 0.065)),
         cylinder((0.0, 0.0, 0.26), 0.02, 0.05, STEEL),
@@ -95,7 +95,7 @@ def candle(main: Material) -> tuple[Part, ...]:
         cylinder((0.0, 0.0, 0.256), 0.008, 0.014, DARK),
         ball((0.0, 0.0, 0.275), 0.032, FLAME),
         ball((0.0, 0.0, 0.293), 0.020, GLOW),
-        box((0.0, 0.095, 0.018), (0.018, 0.04, 0.012), main),
+        box((0.0, 0.095, 0.018), (0.018, 0.04, 0.016), main),
         cylinder((0.0, 0.112, 0.045), 0.055, 0.014, main, Axis.X),
     )
 
@@ -117,7 +117,7 @@ def _landscape() -> tuple[Part, ...]:
         _paint(0.0, 0.13, 0.456, 0.11, "green", 1),
         _disc(0.13, 0.32, 0.09, "yellow", 1),
         _paint(-0.09, 0.20, 0.12, 0.10, "white", 2),
-        _paint(-0.09, 0.265, 0.15, 0.04, "red", 2),
+        _paint(-0.09, 0.265, 0.15, 0.04, "red", 3),
     )
 
 
@@ -142,15 +142,16 @@ def _blocks() -> tuple[Part, ...]:
     )
 
 
-def _portrait() -> tuple[Part, ...]:
-    """A woman with red hair."""
+def _discs() -> tuple[Part, ...]:
+    """Large dots, two of them ringed."""
     return (
-        _paint(0.0, 0.23, 0.46, 0.32, "turquoise", 0),
-        _disc(0.0, 0.265, 0.19, "#8a3a14", 1),
-        _paint(0.0, 0.12, 0.24, 0.09, "purple", 2),
-        _disc(0.0, 0.255, 0.13, "#e8b894", 2),
-        *(_disc(y, 0.27, 0.02, "black", 3) for y in (-0.03, 0.03)),
-        _paint(0.0, 0.22, 0.05, 0.012, "red", 3),
+        _paint(0.0, 0.23, 0.46, 0.32, "cream", 0),
+        _disc(0.12, 0.27, 0.17, "red", 1),
+        _disc(0.12, 0.27, 0.08, "yellow", 2),
+        _disc(-0.08, 0.19, 0.19, "blue", 1),
+        _disc(-0.08, 0.19, 0.09, "orange", 2),
+        _disc(-0.16, 0.33, 0.08, "green", 1),
+        _disc(0.08, 0.13, 0.08, "purple", 1),
     )
 
 
@@ -158,7 +159,7 @@ MOTIFS = {
     Pattern.PLAIN: _landscape,
     Pattern.STRIPED: _bars,
     Pattern.CHECKED: _blocks,
-    Pattern.DOTTED: _portrait,
+    Pattern.DOTTED: _discs,
 }
 
 

@@ -17,7 +17,7 @@ def mug(main: Material) -> tuple[Part, ...]:
         cylinder((0.0, 0.0, 0.1005), 0.074, 0.003, COFFEE),
         box((0.0, 0.060, 0.078), (0.016, 0.036, 0.014), main),
         box((0.0, 0.060, 0.026), (0.016, 0.036, 0.014), main),
-        box((0.0, 0.084, 0.052), (0.018, 0.014, 0.068), main),
+        box((0.0, 0.084, 0.052), (0.022, 0.014, 0.072), main),
     )
 
 
@@ -48,7 +48,7 @@ def bowl(main: Material) -> tuple[Part, ...]:
 
 def plate(main: Material) -> tuple[Part, ...]:
     """A laid place: a plate between knife and fork, which point to +x."""
-    tines = tuple(box((0.085, 0.175 + y, 0.005), (0.05, 0.004, 0.006), STEEL) for y in (-0.011, 0.0, 0.011))
+    tines = tuple(box((0.085, 0.175 + y, 0.004), (0.05, 0.004, 0.005), STEEL) for y in (-0.011, 0.0, 0.011))
     return (
         cylinder((0.0, 0.0, 0.006), 0.16, 0.012, main),
         cylinder((0.0, 0.0, 0.015), 0.27, 0.012, main),
@@ -66,7 +66,7 @@ def pan(main: Material) -> tuple[Part, ...]:
     return (
         cylinder((0.0, -0.09, 0.0275), 0.28, 0.055, main),
         cylinder((0.0, -0.09, 0.0555), 0.25, 0.004, COATING),
-        box((0.0, 0.09, 0.045), (0.030, 0.10, 0.018), main),
+        box((0.0, 0.09, 0.045), (0.030, 0.10, 0.014), main),
         box((0.0, 0.20, 0.045), (0.036, 0.16, 0.026), RUBBER),
         cylinder((0.02, -0.10, 0.0585), 0.12, 0.006, CHINA),
         ball((0.02, -0.10, 0.062), 0.045, material("yellow plastic")),
@@ -95,11 +95,11 @@ def kettle(main: Material) -> tuple[Part, ...]:
         cylinder((0.0, 0.0, 0.195), 0.13, 0.05, main),
         cylinder((0.0, 0.0, 0.228), 0.10, 0.018, DARK),
         ball((0.0, 0.0, 0.245), 0.035, DARK),
-        box((0.0, 0.085, 0.15), (0.034, 0.04, 0.04), main),
+        box((0.0, 0.085, 0.15), (0.036, 0.04, 0.044), main),
         box((0.0, 0.098, 0.18), (0.032, 0.05, 0.03), main),
-        box((0.0, 0.112, 0.205), (0.030, 0.05, 0.024), main),
+        box((0.0, 0.112, 0.205), (0.028, 0.05, 0.024), main),
         box((0.0, -0.10, 0.205), (0.026, 0.09, 0.026), DARK),
-        box((0.0, -0.138, 0.13), (0.028, 0.026, 0.13), DARK),
+        box((0.0, -0.138, 0.13), (0.030, 0.026, 0.13), DARK),
         box((0.0, -0.11, 0.07), (0.026, 0.05, 0.026), DARK),
     )
 
@@ -122,9 +122,9 @@ def toaster(main: Material) -> tuple[Part, ...]:
 def apple(main: Material) -> tuple[Part, ...]:
     """An apple with stalk and leaf."""
     return (
-        ball((0.0, 0.0, 0.05), 0.10, main),
-        cylinder((0.0, 0.0, 0.11), 0.012, 0.036, STALK),
-        box((0.0, 0.024, 0.118), (0.022, 0.044, 0.008), LEAF),
+        ball((0.0, 0.0, 0.06), 0.12, main),
+        cylinder((0.0, 0.0, 0.13), 0.014, 0.040, STALK),
+        box((0.0, 0.028, 0.14), (0.026, 0.050, 0.008), LEAF),
     )
 
 
