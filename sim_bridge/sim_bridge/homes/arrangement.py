@@ -18,8 +18,8 @@ from sim_bridge.homes.shapes import Vector3, extent
 MIN_OBJECTS, MAX_OBJECTS = 4, 80
 # Besides at least this many classes of which the home holds one object ...
 UNIQUE_CLASSES = 5
-# ... objects of other classes come in twos and threes.
-MAX_ALIKE = 3
+# ... objects of other classes come in twos and threes; in more only where no class is left.
+MAX_ALIKE, MAX_ALIKE_CROWDED = 3, 6
 # Classes per object; and homes lack some classes, so that a search for what is not there can be tried.
 CLASS_SHARE = (0.70, 0.95)
 MAX_CLASSES = len(CLASSES) - 4
@@ -92,21 +92,22 @@ def _fill(
             alike[item.label] = 1
     # The classes that come last in the draw stay unique.
     repeated = present[: max(0, len(present) - UNIQUE_CLASSES)]
-    while len(arrangement.placed) < count:
-        repeated = [item for item in repeated if alike[item.label] < MAX_ALIKE]
-        if repeated:
-            item = repeated[int(rng.integers(len(repeated)))]
-            if arrangement.add_another(item):
-                alike[item.label] += 1
-            else:
-                repeated.remove(item)
-        elif waiting:
-            arrangement.add_another(waiting.pop(0))
-        else:
-            raise BadSceneError(
-                f"the furniture has room for {len(arrangement.placed)} objects, not for {count}: "
-                f"ask for fewer or furnish the home with more"
-            )
+    for most in (MAX_ALIKE, MAX_ALIKE_CROWDED):
+        open_classes = [item for item in repeated if alike[item.label] < most]
+        while len(arrangement.placed) < count and (open_classes or waiting):
+            if not open_classes:
+                arrangement.add_another(waiting.pop(0))
+                continue
+            item = open_classes[int(rng.integers(len(open_classes)))]
+            found = arrangement.add_another(item)
+            alike[item.label] += found
+            if not found or alike[item.label] == most:
+                open_classes.remove(item)
+    if len(arrangement.placed) < count:
+        raise BadSceneError(
+            f"the furniture has room for {len(arrangement.placed)} objects, not for {count}: "
+            f"ask for fewer or furnish the home with more"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

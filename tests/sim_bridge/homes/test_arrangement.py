@@ -160,7 +160,7 @@ def test_look_alikes_are_three_to_nine_and_differ_in_more_than_one_word(
     alike_homes: list[tuple[SceneObject, ...]],
 ) -> None:
     others = []
-    sharing = 0
+    sharing = same_colour = 0
     for things in alike_homes:
         assert len(things) == COUNT
         mugs = [thing for thing in things if thing.label == "mug"]
@@ -168,13 +168,14 @@ def test_look_alikes_are_three_to_nine_and_differ_in_more_than_one_word(
         assert len({thing.look for thing in mugs}) == len(mugs)
         for mug in mugs:
             rest = [other.look for other in mugs if other is not mug]
-            assert any(
+            sharing += any(
                 mug.look.colour == look.colour or mug.look.substance == look.substance for look in rest
             )
-            sharing += any(mug.look.colour == look.colour for look in rest)
+            same_colour += any(mug.look.colour == look.colour for look in rest)
     assert (min(others), max(others)) == (2, 8)
     assert 4.5 <= statistics.mean(others) <= 5.5
-    assert sharing > 0.8 * (sum(others) + len(others))
+    assert sharing > 0.95 * (sum(others) + len(others))
+    assert same_colour > 0.8 * (sum(others) + len(others))
 
 
 @pytest.mark.parametrize("label", LABELS)
@@ -262,12 +263,15 @@ def test_pictures_hang_on_walls_beside_windows() -> None:
     pane = Rect(x_min_m=-1.0, y_min_m=back_m - 0.001, x_max_m=0.0, y_max_m=back_m)
     window = Window(room="living room", side=Side.SOUTH, pane=pane, z_min_m=0.9, z_max_m=2.1)
     free = replace(wall, base=replace(wall.base, x_max_m=-1.5))
+    # The desk stands free in its room: nothing hangs in the air behind it.
+    desk = replace(made(15, "desk", "bedroom", 0.6, 1.4, 0.75, True), x_m=20.0, y_m=20.0)
+    pieces = (sofa, desk, *FURNITURE[:6])
     hung = 0
     for seed in range(60):
         for walls, windows in (((wall,), (window,)), ((free,), ())):
-            for thing in arrange(np.random.default_rng(seed), (sofa,), 4, walls=walls, windows=windows):
+            for thing in arrange(np.random.default_rng(seed), pieces, 12, walls=walls, windows=windows):
                 if thing.label == "picture":
-                    assert walls == (wall,)
+                    assert (walls, thing.furniture) == ((wall,), sofa.name)
                     assert build_object(0, thing, sofa).footprint.x_min_m > 0.0
                     hung += 1
     assert hung > 5

@@ -16,9 +16,10 @@ from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene import SCALE, Look, SceneObject, Size, Style
 from sim_bridge.homes.shapes import Axis, Part, Shape, Vector3, extent
 
-COLOURS = (
-    "red blue green yellow white black brown grey orange purple pink turquoise silver gold beige".split()
-)
+COLOURS = {
+    *("red", "blue", "green", "yellow", "white", "black", "brown", "grey", "orange", "purple"),
+    *("pink", "turquoise", "silver", "gold", "beige"),
+}
 # What people have one of in a few sober versions.
 FEW_LOOKS = ("tv", "laptop", "keyboard", "phone")
 FLAT = ("keyboard", "plate", "picture")
@@ -53,7 +54,7 @@ def test_a_class_comes_in_many_looks_of_few_words(item: ObjectClass) -> None:
     looks = item.looks
     assert len(set(looks.all())) == len(looks.all()) >= (4 if item.label in FEW_LOOKS else 12)
     assert len(looks.colours) >= 4
-    assert set(looks.colours) <= set(COLOURS)
+    assert set(looks.colours) <= COLOURS
     assert len(looks.substances) >= 2 or len(looks.patterns) >= 2
     assert all(look in looks for look in looks.all())
     assert default_look(item.label) in looks
@@ -150,25 +151,25 @@ def test_no_two_parts_share_a_face_that_is_seen(item: ObjectClass) -> None:
                     assert any(inside(spot, part) for part in rest), (look, axis, first, second)
 
 
-def silhouette(item: ObjectClass) -> tuple[set[tuple[int, int, int]], Vector3]:
-    """Which cells of a 1.5 cm grid the object fills, whatever its colour, and its extent."""
+def filled_cells(item: ObjectClass) -> set[tuple[int, ...]]:
+    """Which cells of a grid the object fills, whatever its colour, counted from its lowest corner."""
+    cell_m = 0.02
     parts = item.parts(item.default_look)
     low, high = extent(parts)
-    cell_m = 0.015
-    ranges = [range(int((b - a) / cell_m) + 1) for a, b in zip(low, high, strict=True)]
-    filled = set()
-    for cell in itertools.product(*ranges):
-        point = tuple(a + (n + 0.5) * cell_m for a, n in zip(low, cell, strict=True))
-        if any(inside((point[0], point[1], point[2]), part) for part in parts):
-            filled.add(cell)
-    return filled, (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+    counts = [int((top - bottom) / cell_m) + 1 for bottom, top in zip(low, high, strict=True)]
+    cells = set()
+    for cell in itertools.product(*(range(count) for count in counts)):
+        x, y, z = (bottom + (n + 0.5) * cell_m for bottom, n in zip(low, cell, strict=True))
+        if any(inside((x, y, z), part) for part in parts):
+            cells.add(cell)
+    return cells
 
 
 def test_the_shapes_of_two_classes_differ() -> None:
-    shapes = {item.label: silhouette(item)[0] for item in CLASSES if item.label not in ("tv", "guitar")}
+    shapes = {item.label: filled_cells(item) for item in CLASSES}
     for one, other in itertools.combinations(shapes, 2):
         common, either = shapes[one] & shapes[other], shapes[one] | shapes[other]
-        assert len(common) / len(either) < 0.85, (one, other)
+        assert len(common) / len(either) < 0.75, (one, other)
 
 
 def test_pictures_are_flat_and_their_pattern_decides_what_they_show() -> None:
@@ -231,7 +232,7 @@ def test_what_cannot_be_is_refused_with_a_way_out() -> None:
         (replace(MUG, label="zeppelin"), r"called 'zeppelin'; there are mug, book,"),
         (
             replace(MUG, look=replace(MUG.look, colour="purple")),
-            "object 7, a mug on 'desk 1', cannot be medium and of 'purple striped ceramic'; choose from: red, blue",
+            "object 7, a mug on 'desk 1', cannot be medium and of 'purple striped ceramic'; choose from: red",
         ),
         (replace(MUG, look=replace(MUG.look, substance=Substance.WOOD)), "of 'red striped wood'"),
         (replace(MUG, surface=2), "on surface 2, but a desk has 2, counted from 0"),
