@@ -31,7 +31,7 @@ LOWEST_SHELF_M = 0.10
 # How far off a wall's face a picture's back may be, and what it keeps from windows.
 TOUCH_M = 0.02
 WINDOW_GAP_M = 0.05
-YAW_SPREAD_DEG = 30.0
+YAW_SPREAD_DEG, QUARTER_TURN_DEG = 30.0, 90
 TRIES = 30
 # Objects stand on a grid so fine that nobody sees it, for short numbers in scene files.
 PER_METRE = 1000
@@ -187,8 +187,13 @@ class _Arrangement:
                 boxes[look] = extent(item.parts(look))
             site = sites[int(self._rng.choice(len(sites), p=shares))]
             # Wide objects only fit when they stand straight: turn them less and less.
-            spread_deg = 0.0 if item.hangs else YAW_SPREAD_DEG * (1.0 - attempt / (TRIES - 1))
-            turn_rad = math.radians(round(self._rng.uniform(-spread_deg, spread_deg)))
+            spread_deg = (
+                0.0 if item.hangs else YAW_SPREAD_DEG * (1.0 - attempt % (TRIES // 2) / (TRIES // 2 - 1))
+            )
+            turn_deg = round(self._rng.uniform(-spread_deg, spread_deg))
+            # What is too deep to face the front may find room sideways.
+            sideways_deg = QUARTER_TURN_DEG if attempt >= TRIES // 2 and not item.hangs else 0
+            turn_rad = math.radians(turn_deg + sideways_deg)
             found = self._place(item, look, site, turn_rad, boxes[look])
             if found is not None:
                 self.placed.append(found)

@@ -156,7 +156,7 @@ SHOE = ObjectClass(
         patterns=(Pattern.PLAIN, Pattern.STRIPED, Pattern.CHECKED),
     ),
     build=shoe,
-    belongs_on={"shoe bench": 5.0, "mat": 4.0, "chair": 0.3, "stool": 0.5, "low shelf": 1.0},
+    belongs_on={"shoe bench": 5.0, "mat": 4.0, "chair": 0.3, "low shelf": 1.0},
 )
 HAT = ObjectClass(
     label="hat",
@@ -167,8 +167,6 @@ HAT = ObjectClass(
     build=hat,
     belongs_on={
         **SEATS,
-        "console table": 2.0,
-        "shoe bench": 1.5,
         "dresser": 2.0,
         "sideboard": 0.7,
         "ironing board": 0.7,
@@ -185,8 +183,6 @@ UMBRELLA = ObjectClass(
     build=umbrella,
     belongs_on={
         "mat": 5.0,
-        "shoe bench": 2.0,
-        "bathtub": 0.7,
         "armchair": 0.5,
         "bed": 0.3,
         "washing machine": 0.7,
@@ -224,11 +220,9 @@ WATERING_CAN = ObjectClass(
         "mat": 3.0,
         "low shelf": 2.0,
         "washing machine": 1.0,
-        "sink unit": 1.0,
         "shoe bench": 1.0,
         "filing cabinet": 1.0,
         "kitchen counter": 0.7,
         "sideboard": 0.7,
-        "toilet": 0.3,
     },
 )

@@ -180,7 +180,7 @@ PLANT = ObjectClass(
         patterns=(Pattern.PLAIN, Pattern.STRIPED),
     ),
     build=plant,
-    belongs_on={**TABLES, **CHESTS, "washstand": 1.0, "mat": 0.5, "kitchen counter": 0.7, "toilet": 0.3},
+    belongs_on={**TABLES, **CHESTS, "washstand": 1.0, "mat": 0.5, "kitchen counter": 0.7},
 )
 VASE = ObjectClass(
     label="vase",

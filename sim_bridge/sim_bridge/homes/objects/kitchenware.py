@@ -108,8 +108,7 @@ def toaster(main: Material) -> tuple[Part, ...]:
     """A toaster with two slices in its slots; lever and knob are at +x."""
     crust = material("#8a5526 fabric")
     return (
-        box((0.0, 0.0, 0.10), (0.20, 0.30, 0.18), main),
-        cylinder((0.0, 0.0, 0.185), 0.05, 0.296, main, Axis.Y),
+        box((0.0, 0.0, 0.11), (0.20, 0.30, 0.20), main),
         *(box((x, 0.0, 0.2105), (0.040, 0.22, 0.003), DARK) for x in (-0.05, 0.05)),
         *(box((x, 0.0, 0.23), (0.026, 0.16, 0.08), crust) for x in (-0.05, 0.05)),
         box((0.102, 0.06, 0.12), (0.006, 0.014, 0.11), DARK),
@@ -176,7 +175,6 @@ PLATE = ObjectClass(
     belongs_on={
         "dining table": 5.0,
         "kitchen counter": 3.0,
-        "sink unit": 1.0,
         "coffee table": 1.0,
         "desk": 0.5,
     },
@@ -188,7 +186,7 @@ PAN = ObjectClass(
         substances=(Substance.METAL, Substance.CERAMIC),
     ),
     build=pan,
-    belongs_on={"stove": 5.0, "kitchen counter": 3.0, "sink unit": 1.0, "dining table": 1.0},
+    belongs_on={"stove": 5.0, "kitchen counter": 3.0, "dining table": 1.0},
 )
 POT = ObjectClass(
     label="pot",

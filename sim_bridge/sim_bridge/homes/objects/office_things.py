@@ -87,7 +87,7 @@ BOOK = ObjectClass(
         patterns=(Pattern.PLAIN, Pattern.STRIPED, Pattern.CHECKED),
     ),
     build=book,
-    belongs_on={**TABLES, **CHESTS, **SEATS, "mat": 0.5, "toilet": 0.5, "toy chest": 0.7},
+    belongs_on={**TABLES, **CHESTS, **SEATS, "mat": 0.5, "toy chest": 0.7},
 )
 LAPTOP = ObjectClass(
     label="laptop",

@@ -112,7 +112,6 @@ TOY_CAR = ObjectClass(
         "single bed": 1.0,
         "desk": 1.0,
         "sofa": 0.5,
-        "stool": 0.5,
     },
 )
 GUITAR = ObjectClass(
