@@ -73,7 +73,7 @@ def nearest(word: str, options: Sequence[str]) -> str:
     """What to add to an error about a word that is none of `options`."""
     close = difflib.get_close_matches(word, options, n=1)
     if close:
-        return f"; did you mean {close[0]!r}?"
+        return f"; did you mean {str(close[0])!r}?"
     more = ", ..." if len(options) > _MOST_OPTIONS_SHOWN else ""
     return f"; there are {', '.join(options[:_MOST_OPTIONS_SHOWN]) or 'none'}{more}"
 

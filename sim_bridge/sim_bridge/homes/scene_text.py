@@ -13,7 +13,7 @@ import yaml
 
 from robustnav_msgs_py.errors import BadSceneError
 
-# Room for 5000 objects and 2000 pieces of furniture.
+# A row is about 120 bytes: thousands of objects fit.
 MAX_BYTES = 1_000_000
 # The format needs four: the file, its lists, their rows, the numbers of a row.
 MAX_DEPTH = 8
