@@ -109,9 +109,9 @@ def piece_of(row: Row, rooms: Sequence[str], default_style: DefaultStyle | None)
         y_m=y_m,
         quarter_turns=FACINGS.index(row.choice("facing", Side, Side.EAST)),
         style=Style(
-            width_m=row.length_m("width", style and style.width_m),
-            main=row.material("main", style and style.main),
-            accent=row.material("accent", style and style.accent),
+            width_m=row.length_m("width", style.width_m if style else None),
+            main=row.material("main", style.main if style else None),
+            accent=row.material("accent", style.accent if style else None),
         ),
     )
 
@@ -123,8 +123,8 @@ def object_of(row: Row, pieces: Sequence[str], default_look: DefaultLook | None)
     if default_look is not None and not all(field in row for field in ("colour", "material")):
         usual = _default(row, "class", label, default_look)
     look = Look(
-        colour=row.colour("colour", usual and usual.colour),
-        substance=row.choice("material", Substance, usual and usual.substance),
+        colour=row.colour("colour", usual.colour if usual else None),
+        substance=row.choice("material", Substance, usual.substance if usual else None),
         pattern=row.choice("pattern", Pattern, Pattern.PLAIN),
         size=row.choice("size", Size, Size.MEDIUM),
     )
