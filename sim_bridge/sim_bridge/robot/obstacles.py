@@ -9,7 +9,6 @@ import scipy.ndimage
 from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.home import Rect
 
-
 # The floor is looked at in squares of this side; each remembers which rectangles can be nearest in it.
 SQUARE_M = 0.10
 ROUNDING_M = 1e-9
