@@ -44,8 +44,8 @@ class Obstacles:
         # Squares are remembered only for the floor: there are endlessly many outside.
         candidates = self._candidates(x_m, y_m) if nearest >= 0.0 else self._sides
         for x_min_m, x_max_m, y_min_m, y_max_m in candidates:
-            beyond_x = x_min_m - x_m if x_min_m > x_m else x_m - x_max_m
-            beyond_y = y_min_m - y_m if y_min_m > y_m else y_m - y_max_m
+            beyond_x = max(x_min_m - x_m, x_m - x_max_m)
+            beyond_y = max(y_min_m - y_m, y_m - y_max_m)
             if beyond_x > 0.0 and beyond_y > 0.0:
                 distance = math.hypot(beyond_x, beyond_y)
             else:
