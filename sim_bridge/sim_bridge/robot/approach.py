@@ -13,11 +13,16 @@ PATIENCE_S = 5.0
 
 
 def approach_speed(distance: float, highest: float, acceleration: float, dt_s: float) -> float:
-    """The speed from which the distance is enough to brake; the last step ends exactly.
+    """The speed from which the distance is enough to brake, when a step of `dt_s` has been made with it.
 
     `distance` (m or rad) is not negative; the others are in its unit, per second or per second squared.
     """
-    return min(highest, math.sqrt(2.0 * BRAKING_SHARE * acceleration * distance), distance / dt_s)
+    slowing = BRAKING_SHARE * acceleration
+    # The v with v dt + v^2 / (2 slowing) = distance, without the difference of two nearly equal roots.
+    per_step = slowing * dt_s
+    return min(
+        highest, 2.0 * slowing * distance / (per_step + math.sqrt(per_step**2 + 2.0 * slowing * distance))
+    )
 
 
 class Progress:

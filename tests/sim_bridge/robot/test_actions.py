@@ -118,8 +118,8 @@ def test_an_action_takes_as_long_as_the_drive_needs() -> None:
     drive = drive_at(ORIGIN)
     runner = ActionRunner(drive)
     runner.accept(Action(forward_m=1.0))
-    # 0.5 s to speed up over 0.125 m, 0.3 s to brake, the rest at 0.5 m/s.
-    assert run(drive, runner) == pytest.approx(2.4, abs=0.2)
+    # 0.5 s to speed up over 0.125 m, 0.625 s to brake at 0.8 m/s2 over 0.156 m, the rest at 0.5 m/s.
+    assert run(drive, runner) == pytest.approx(0.5 + 0.625 + 1.438, abs=0.15)
     runner.accept(Action(turn_rad=math.tau))
     assert run(drive, runner) == pytest.approx(math.tau / 1.2 + 0.2, abs=0.2)
 
