@@ -121,7 +121,8 @@ def test_an_action_takes_as_long_as_the_drive_needs() -> None:
     # 0.5 s to speed up over 0.125 m, 0.625 s to brake at 0.8 m/s2 over 0.156 m, the rest at 0.5 m/s.
     assert run(drive, runner) == pytest.approx(0.5 + 0.625 + 1.438, abs=0.15)
     runner.accept(Action(turn_rad=math.tau))
-    assert run(drive, runner) == pytest.approx(math.tau / 1.2 + 0.2, abs=0.2)
+    # 0.3 s and 0.18 rad to speed up, 0.375 s and 0.225 rad to brake at 3.2 rad/s2.
+    assert run(drive, runner) == pytest.approx(0.3 + 0.375 + (math.tau - 0.405) / 1.2, abs=0.15)
 
 
 def test_what_is_in_the_way_ends_an_action_and_the_next_begins_there() -> None:
