@@ -91,7 +91,8 @@ def parse_action(line: str, step_m: float = BENCHMARK_STEP_M, turn_rad: float = 
 class ActionRunner:
     """Carries actions out one after the other. Owned by the simulation, stepped from its thread.
 
-    `problem` is the sentence about why the last action ended early, "" where it did not.
+    `problem` is the sentence about why an action ended early; it is "" until one does, and again once another
+    action is accepted. Those that wait already begin where the robot was stopped.
     """
 
     def __init__(self, drive: Drive) -> None:
@@ -134,7 +135,8 @@ class ActionRunner:
         """The velocity to drive for the next `dt_s`; standstill when idle."""
         while self.busy:
             if self._action is None:
-                if not self._drive.stands:
+                # To the last bit: a heading that still creeps would be off by the end of a long way.
+                if self._drive.velocity != STANDSTILL:
                     return STANDSTILL
                 self._next()
             left_m, left_rad = self._left()

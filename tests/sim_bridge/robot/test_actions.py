@@ -21,7 +21,7 @@ from sim_bridge.robot.actions import (
     ActionRunner,
     parse_action,
 )
-from sim_bridge.robot.drive import Drive, DriveLimits
+from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.obstacles import Obstacles
 from sim_bridge.robot.planar import ORIGIN, composed
 
@@ -201,8 +201,14 @@ def test_an_action_after_a_velocity_begins_once_the_robot_stands() -> None:
     for _ in range(40):
         drive.step(Velocity(linear_m_s=0.5, angular_rad_s=1.0), DT_S)
     assert not drive.stands
-    assert do(drive, "left 90").problem == ""
-    assert drive.stands
+    runner = ActionRunner(drive)
+    runner.accept(parse_action("forward 5"))
+    while drive.velocity != STANDSTILL:
+        drive.step(runner.wanted(DT_S), DT_S)
+    begin = drive.pose
+    run(drive, runner)
+    assert runner.problem == ""
+    assert drive.pose == composed(begin, Pose2D(x_m=5.0, y_m=0.0))
 
 
 def test_more_than_twenty_waiting_actions_are_refused() -> None:
