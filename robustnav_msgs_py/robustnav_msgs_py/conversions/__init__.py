@@ -57,13 +57,24 @@ from robustnav_msgs_py.conversions.text import (
     text_from_message,
     text_to_message,
 )
+from robustnav_msgs_py.conversions.transforms import (
+    Transform,
+    camera_transform,
+    planar_transform,
+    tf_available,
+    tf_message,
+    transform_from_message,
+    transform_to_message,
+)
 
 __all__ = [
     "NANOSECONDS",
+    "Transform",
     "belief_from_message",
     "belief_to_message",
     "camera_from_message",
     "camera_to_message",
+    "camera_transform",
     "clock_from_message",
     "clock_to_message",
     "color_from_message",
@@ -83,6 +94,7 @@ __all__ = [
     "odometry_to_message",
     "path_from_message",
     "path_to_message",
+    "planar_transform",
     "pose_from_message",
     "pose_to_message",
     "record_from_message",
@@ -95,6 +107,10 @@ __all__ = [
     "status_to_message",
     "text_from_message",
     "text_to_message",
+    "tf_available",
+    "tf_message",
+    "transform_from_message",
+    "transform_to_message",
     "velocity_from_message",
     "velocity_to_message",
     "visible_from_message",

@@ -8,6 +8,11 @@ from robustnav_msgs_py.values import Pose2D, Velocity
 from sim_bridge.robot.obstacles import Obstacles
 
 STANDSTILL = Velocity(linear_m_s=0.0, angular_rad_s=0.0)
+STANDING_M_S = 1e-3
+STANDING_RAD_S = 1e-2
+# What counts as the same place: a standing robot may be set right by this much.
+SETTLE_M = 0.002
+SETTLE_RAD = math.radians(0.2)
 # Halvings of a step that would end too close: to 1/64 of it.
 HALVINGS = 6
 
@@ -24,7 +29,10 @@ class DriveLimits:
 
 
 class Drive:
-    """Where the robot is and how it moves. Owned by the simulation, stepped from its thread."""
+    """Where the robot is and how it moves. Owned by the simulation, stepped from its thread.
+
+    `velocity` is what the wheels do; the robot does the same unless they slip.
+    """
 
     def __init__(
         self, obstacles: Obstacles, limits: DriveLimits, radius_m: float, stop_distance_m: float
@@ -48,11 +56,48 @@ class Drive:
         self.velocity = STANDSTILL
         self.blocked = False
 
-    def step(self, wanted: Velocity, dt_s: float) -> None:
+    @property
+    def stands(self) -> bool:
+        """Whether it moves too slowly to matter."""
+        velocity = self.velocity
+        return abs(velocity.linear_m_s) < STANDING_M_S and abs(velocity.angular_rad_s) < STANDING_RAD_S
+
+    def settle(self, pose: Pose2D) -> bool:
+        """Take `pose` for the exact one, where the robot stands there but for a hair.
+
+        False, and nothing changes, where it moves, where `pose` is further off than `SETTLE_M` or
+        `SETTLE_RAD`, or where something is too near to it.
+        """
+        near = self.pose.distance_m(pose) <= SETTLE_M and abs(self.pose.turn_rad(pose)) <= SETTLE_RAD
+        if not (near and self.stands):
+            return False
+        here_m = self.obstacles.clearance_m(self.pose.x_m, self.pose.y_m)
+        if self.obstacles.clearance_m(pose.x_m, pose.y_m) < min(self.keep_m, here_m):
+            return False
+        self.pose = Pose2D(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=math.remainder(pose.yaw_rad, math.tau))
+        self.velocity = STANDSTILL
+        return True
+
+    def replace_obstacles(self, obstacles: Obstacles) -> None:
+        """Go on among other obstacles: a door has been closed, a thing has been put elsewhere.
+
+        Raises BadMessageError, and nothing changes, where the robot itself is in the way of a new one.
+        """
+        x_m, y_m = self.pose.x_m, self.pose.y_m
+        clearance_m = obstacles.clearance_m(x_m, y_m)
+        if clearance_m < self.keep_m and clearance_m < self.obstacles.clearance_m(x_m, y_m):
+            raise BadMessageError(
+                f"the robot is in the way at ({x_m:.2f}, {y_m:.2f}): what is put there leaves it "
+                f"{max(clearance_m, 0.0):.2f} m, it needs {self.keep_m:.2f} m; drive it away first"
+            )
+        self.obstacles = obstacles
+
+    def step(self, wanted: Velocity, dt_s: float, slip: float = 0.0) -> None:
         """Move for `dt_s` as near to the wanted velocity as the limits allow.
 
         A step that would bring something nearer than the kept distance is shortened to end there and the
         robot stands; it still turns, and it still drives away. `blocked` tells whether that happened.
+        `slip` is the share (0..1) of the wheels' motion that comes to nothing.
         """
         limits = self.limits
         linear = _approached(
@@ -67,10 +112,11 @@ class Drive:
             limits.turn_acceleration_rad_s2 * dt_s,
             limits.braking,
         )
-        x_m, y_m, yaw_rad = _moved(self.pose, linear, angular, dt_s)
+        grip_s = (1.0 - slip) * dt_s
+        x_m, y_m, yaw_rad = _moved(self.pose, linear, angular, grip_s)
         self.blocked = linear != 0.0 and not self._may_be_at(x_m, y_m)
         if self.blocked:
-            x_m, y_m = self._as_far_as_possible(linear, angular, dt_s)
+            x_m, y_m = self._as_far_as_possible(linear, angular, grip_s)
             linear = 0.0
         self.pose = Pose2D(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad)
         self.velocity = Velocity(linear_m_s=linear, angular_rad_s=angular)

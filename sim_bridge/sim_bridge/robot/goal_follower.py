@@ -1,13 +1,16 @@
 """Drives the robot to a goal pose: brake, plan, then turn and drive from corner to corner, and turn at last.
 
+Where it ends is the goal itself, not a hair beside it, so that the poses of a planner's lattice are exact.
 Short moves to what lies behind are driven backwards, as a planner on a lattice of poses expects it.
 """
 
 import math
 from enum import StrEnum
+from itertools import pairwise
 
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.values import Pose2D, Velocity
+from sim_bridge.robot.approach import Progress, approach_speed
 from sim_bridge.robot.drive import STANDSTILL, Drive, describe
 from sim_bridge.robot.route import NoWayError, Point, RoutePlanner
 
@@ -16,10 +19,6 @@ REVERSE_M = 0.60
 ARRIVED_M = 0.02
 TURNED_RAD = 0.003
 REACHED_M = 0.001
-STANDING_M_S = 1e-3
-STANDING_RAD_S = 1e-2
-# Braking is planned with this share of what the drive can do, so that a goal is not overrun.
-BRAKING_SHARE = 0.8
 # While driving, the heading is corrected as fast as this (1/s), until the corner is this near.
 STEERING_PER_S = 2.0
 STEER_UNTIL_M = 0.10
@@ -58,6 +57,12 @@ class GoalFollower:
         self._backwards = False
         self._blocked_s = 0.0
         self._plans = 0
+        self._progress = Progress()
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is a goal to drive to."""
+        return self.goal is not None
 
     def accept(self, goal: Pose2D) -> None:
         """Go to `goal` instead of whatever was followed.
@@ -67,20 +72,27 @@ class GoalFollower:
         """
         if goal == self.goal:
             return
-        clearance_m = self._drive.obstacles.clearance_m(goal.x_m, goal.y_m)
-        if clearance_m < self._drive.keep_m:
-            raise GoalRefusedError(
-                f"the robot cannot stand at ({goal.x_m:.2f}, {goal.y_m:.2f}): {describe(clearance_m)}, "
-                f"it needs {self._drive.keep_m:.2f} m; choose a place on free floor"
-            )
-        try:
-            self._planner.plan(self._here(), (goal.x_m, goal.y_m))
-        except NoWayError as problem:
-            raise GoalRefusedError(str(problem)) from problem
+        self._require_way(goal)
         self.goal = goal
         self.problem = ""
-        self.phase = Phase.BRAKING
-        self._plans = 0
+        self._begin()
+
+    def replan(self, planner: RoutePlanner) -> None:
+        """Find ways with `planner` from now on; call it once the drive has its new obstacles.
+
+        The robot goes on as it did where its way is still free. Else it brakes and takes another one, or it
+        gives the goal up, and `problem` says why.
+        """
+        self._planner = planner
+        if self.goal is None:
+            return
+        try:
+            self._require_way(self.goal)
+        except GoalRefusedError as problem:
+            self._give_up(str(problem))
+            return
+        if self.phase is not Phase.ALIGNING and not self._is_way_free():
+            self._begin()
 
     def cancel(self) -> None:
         """Forget the goal."""
@@ -89,9 +101,20 @@ class GoalFollower:
 
     def wanted(self, dt_s: float) -> Velocity:
         """The velocity to drive for the next `dt_s`; standstill when idle."""
+        velocity = self._followed(dt_s)
         if self.goal is None:
             return STANDSTILL
-        if self.phase is Phase.BRAKING and self._stands():
+        if self._progress.is_missing(self._drive.pose, dt_s):
+            x_m, y_m = self._here()
+            self._give_up(f"the robot wants to drive but stays at ({x_m:.2f}, {y_m:.2f}): its wheels slip")
+            return STANDSTILL
+        return velocity
+
+    def _followed(self, dt_s: float) -> Velocity:
+        """What the goal asks for; the phase may change, and the goal may be reached or given up."""
+        if self.goal is None:
+            return STANDSTILL
+        if self.phase is Phase.BRAKING and self._drive.stands:
             self._plan(self.goal)
         if self.phase is Phase.TURNING:
             velocity = self._turn(self._course(), dt_s)
@@ -106,15 +129,39 @@ class GoalFollower:
             velocity = self._turn(self.goal.yaw_rad, dt_s)
             if velocity is not None:
                 return velocity
+            self._drive.settle(self.goal)
             self.cancel()
         return STANDSTILL
 
     def _here(self) -> Point:
         return self._drive.pose.x_m, self._drive.pose.y_m
 
-    def _stands(self) -> bool:
-        velocity = self._drive.velocity
-        return abs(velocity.linear_m_s) < STANDING_M_S and abs(velocity.angular_rad_s) < STANDING_RAD_S
+    def _begin(self) -> None:
+        """Brake, and plan once the robot stands."""
+        self.phase = Phase.BRAKING
+        self._plans = 0
+        self._progress.restart()
+
+    def _require_way(self, goal: Pose2D) -> None:
+        """Raises GoalRefusedError where the robot cannot stand at the goal or cannot get there."""
+        clearance_m = self._drive.obstacles.clearance_m(goal.x_m, goal.y_m)
+        if clearance_m < self._drive.keep_m:
+            raise GoalRefusedError(
+                f"the robot cannot stand at ({goal.x_m:.2f}, {goal.y_m:.2f}): {describe(clearance_m)}, "
+                f"it needs {self._drive.keep_m:.2f} m; choose a place on free floor"
+            )
+        try:
+            self._planner.plan(self._here(), (goal.x_m, goal.y_m))
+        except NoWayError as problem:
+            raise GoalRefusedError(str(problem)) from problem
+
+    def _is_way_free(self) -> bool:
+        """Whether the corners ahead can still be driven to, one after the other."""
+        way = [self._here(), *self._corners]
+        drive = self._drive
+        return len(way) > 1 and all(
+            drive.obstacles.is_line_free(start, end, drive.keep_m) for start, end in pairwise(way)
+        )
 
     def _plan(self, goal: Pose2D) -> None:
         self._plans += 1
@@ -152,10 +199,10 @@ class GoalFollower:
     def _turn(self, heading_rad: float, dt_s: float) -> Velocity | None:
         """The turn towards a heading; None once it is reached and the robot stands."""
         error_rad = _difference(heading_rad, self._drive.pose.yaw_rad)
-        if abs(error_rad) < TURNED_RAD and self._stands():
+        if abs(error_rad) < TURNED_RAD and self._drive.stands:
             return None
         limits = self._drive.limits
-        speed = _speed(abs(error_rad), limits.turn_rad_s, limits.turn_acceleration_rad_s2, dt_s)
+        speed = approach_speed(abs(error_rad), limits.turn_rad_s, limits.turn_acceleration_rad_s2, dt_s)
         return Velocity(linear_m_s=0.0, angular_rad_s=math.copysign(speed, error_rad))
 
     def _advance(self, dt_s: float) -> Velocity | None:
@@ -165,15 +212,15 @@ class GoalFollower:
         course_error = _difference(self._course(), self._drive.pose.yaw_rad)
         # Along the robot's own axis; it turns negative once the corner lies behind.
         along_m = distance_m * math.cos(course_error)
-        if along_m <= REACHED_M and self._stands():
+        if along_m <= REACHED_M and self._drive.stands:
             self._corners.pop(0)
             self.phase = Phase.TURNING if self._corners else Phase.ALIGNING
             # The corner is passed: the turn towards the next one begins in the same step.
-            return self.wanted(dt_s)
+            return self._followed(dt_s)
         if self._is_stuck(dt_s):
             return self._after_block(distance_m, dt_s)
         limits = self._drive.limits
-        speed = _speed(max(along_m, 0.0), limits.speed_m_s, limits.acceleration_m_s2, dt_s)
+        speed = approach_speed(max(along_m, 0.0), limits.speed_m_s, limits.acceleration_m_s2, dt_s)
         steering = STEERING_PER_S * course_error if distance_m > STEER_UNTIL_M else 0.0
         return Velocity(linear_m_s=-speed if self._backwards else speed, angular_rad_s=steering)
 
@@ -188,12 +235,7 @@ class GoalFollower:
             self.phase = Phase.BRAKING
         else:
             self._give_up(f"something is in the way {distance_m:.2f} m ahead; the robot has stopped there")
-        return self.wanted(dt_s)
-
-
-def _speed(distance: float, highest: float, acceleration: float, dt_s: float) -> float:
-    """The speed from which the distance is enough to brake; the last step ends exactly."""
-    return min(highest, math.sqrt(2.0 * BRAKING_SHARE * acceleration * distance), distance / dt_s)
+        return self._followed(dt_s)
 
 
 def _difference(heading_rad: float, from_rad: float) -> float:

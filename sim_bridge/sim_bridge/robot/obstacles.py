@@ -9,26 +9,65 @@ import scipy.ndimage
 from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.home import Rect
 
+# The floor is looked at in squares of this side; each remembers which rectangles can be nearest in it.
+SQUARE_M = 0.10
+ROUNDING_M = 1e-9
+
+# x_min_m, x_max_m, y_min_m, y_max_m
+Sides = tuple[float, float, float, float]
+
 
 class Obstacles:
-    """The rectangles that a robot must not touch, within bounds that it must not leave. Immutable."""
+    """The rectangles that a robot must not touch, within bounds that it must not leave.
+
+    What it answers never changes; it only remembers, square by square, which few rectangles matter there.
+    """
 
     def __init__(self, rects: Sequence[Rect], bounds: Rect) -> None:
         self.bounds = bounds
         self._low = np.array([(rect.x_min_m, rect.y_min_m) for rect in rects]).reshape(-1, 2)
         self._high = np.array([(rect.x_max_m, rect.y_max_m) for rect in rects]).reshape(-1, 2)
+        self._sides = [(rect.x_min_m, rect.x_max_m, rect.y_min_m, rect.y_max_m) for rect in rects]
+        self._near: dict[tuple[int, int], list[Sides]] = {}
+
+    @property
+    def corners_m(self) -> Float64:
+        """The corners of all rectangles, [4 n, 2]."""
+        low, high = self._low, self._high
+        pairs = ((low, low), (low, high), (high, low), (high, high))
+        return np.concatenate([np.stack([x[:, 0], y[:, 1]], axis=1) for x, y in pairs])
 
     def clearance_m(self, x_m: float, y_m: float) -> float:
         """Distance from the point to the nearest obstacle or to the bounds; negative inside or outside."""
         bounds = self.bounds
-        inside = min(x_m - bounds.x_min_m, bounds.x_max_m - x_m, y_m - bounds.y_min_m, bounds.y_max_m - y_m)
-        if not len(self._low):
-            return inside
-        point = np.array((x_m, y_m))
-        beyond = np.maximum(self._low - point, point - self._high)
-        outside = np.maximum(beyond, 0.0)
-        distance = np.hypot(outside[:, 0], outside[:, 1]) + np.minimum(beyond.max(axis=1), 0.0)
-        return min(inside, float(distance.min()))
+        nearest = min(x_m - bounds.x_min_m, bounds.x_max_m - x_m, y_m - bounds.y_min_m, bounds.y_max_m - y_m)
+        # Squares are remembered only for the floor: there are endlessly many outside.
+        candidates = self._candidates(x_m, y_m) if nearest >= 0.0 else self._sides
+        for x_min_m, x_max_m, y_min_m, y_max_m in candidates:
+            beyond_x = max(x_min_m - x_m, x_m - x_max_m)
+            beyond_y = max(y_min_m - y_m, y_m - y_max_m)
+            if beyond_x > 0.0 and beyond_y > 0.0:
+                distance = math.hypot(beyond_x, beyond_y)
+            else:
+                distance = max(beyond_x, beyond_y)
+            if distance < nearest:
+                nearest = distance
+        return nearest
+
+    def _candidates(self, x_m: float, y_m: float) -> list[Sides]:
+        """The sides of the rectangles that can be the nearest one somewhere in the point's square."""
+        square = (math.floor(x_m / SQUARE_M), math.floor(y_m / SQUARE_M))
+        near = self._near.get(square)
+        if near is None:
+            middle = (np.array(square) + 0.5) * SQUARE_M
+            beyond = np.maximum(self._low - middle, middle - self._high)
+            outside = np.maximum(beyond, 0.0)
+            distance = np.hypot(outside[:, 0], outside[:, 1]) + np.minimum(beyond.max(axis=1), 0.0)
+            # From the middle to a corner every distance changes by at most half the diagonal.
+            reach = distance.min(initial=math.inf) + SQUARE_M * math.sqrt(2.0) + ROUNDING_M
+            near = [self._sides[at] for at in np.nonzero(distance <= reach)[0].tolist()]
+            self._near[square] = near
+        return near
 
     def is_line_free(self, start_m: tuple[float, float], end_m: tuple[float, float], radius_m: float) -> bool:
         """Whether a disc of `radius_m` can be pushed straight from `start_m` to `end_m`."""
@@ -66,13 +105,24 @@ class ClearanceGrid:
         """The grid with obstacles added."""
         cells_m = self.cells_m.copy()
         for rect in rects:
-            beyond_x = np.maximum(rect.x_min_m - self.x_m, self.x_m - rect.x_max_m)[None, :]
-            beyond_y = np.maximum(rect.y_min_m - self.y_m, self.y_m - rect.y_max_m)[:, None]
+            # A rectangle changes nothing further away than the largest clearance so far.
+            reach_m = max(float(cells_m.max(initial=0.0)), 0.0) + self.resolution_m
+            rows = _between(self.y_m, rect.y_min_m - reach_m, rect.y_max_m + reach_m)
+            columns = _between(self.x_m, rect.x_min_m - reach_m, rect.x_max_m + reach_m)
+            x_m, y_m = self.x_m[columns], self.y_m[rows]
+            beyond_x = np.maximum(rect.x_min_m - x_m, x_m - rect.x_max_m)[None, :]
+            beyond_y = np.maximum(rect.y_min_m - y_m, y_m - rect.y_max_m)[:, None]
             distance = np.hypot(np.maximum(beyond_x, 0.0), np.maximum(beyond_y, 0.0))
             distance += np.minimum(np.maximum(beyond_x, beyond_y), 0.0)
-            np.minimum(cells_m, distance, out=cells_m)
+            window = cells_m[rows, columns]
+            np.minimum(window, distance, out=window)
         return ClearanceGrid(self.bounds, self.resolution_m, cells_m)
 
     def regions(self, radius_m: float) -> int:
         """Into how many parts the floor falls for a robot of `radius_m`."""
         return int(scipy.ndimage.label(self.cells_m >= radius_m)[1])
+
+
+def _between(values_m: Float64, low_m: float, high_m: float) -> slice:
+    """Which of the sorted values lie between the two."""
+    return slice(int(np.searchsorted(values_m, low_m)), int(np.searchsorted(values_m, high_m, side="right")))

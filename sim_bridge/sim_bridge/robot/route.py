@@ -1,14 +1,16 @@
 """The way from one place of a home to another, around walls and furniture."""
 
+import itertools
 import math
 from collections.abc import Iterator
 
 import numpy as np
 import scipy.sparse
 import scipy.sparse.csgraph
+import scipy.spatial
 
 from robustnav_msgs_py.errors import RobustnavError
-from robustnav_msgs_py.values import Float64
+from robustnav_msgs_py.values import Bool, Float64
 from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 Point = tuple[float, float]
@@ -91,12 +93,9 @@ class RoutePlanner:
         length = np.linalg.norm(self._points[source] - self._points[target], axis=1)
         # Between two cell centres the clearance falls by at most half their distance.
         certain = clearance - length / 2.0 >= self._keep_m
-        passable = certain | np.array(
-            [
-                sure or self._obstacles.is_line_free(self._point(a), self._point(b), self._keep_m)
-                for sure, a, b in zip(certain.tolist(), source.tolist(), target.tolist(), strict=True)
-            ],
-            dtype=bool,
+        passable = certain.copy()
+        passable[~certain] = self._keeps_from_corners(
+            self._points[source[~certain]], self._points[target[~certain]]
         )
         closeness = np.clip((COMFORT_M - clearance) / max(COMFORT_M - self._keep_m, 1e-3), 0.0, 1.0)
         weight = length * (1.0 + CLOSENESS_COST * closeness)
@@ -104,6 +103,33 @@ class RoutePlanner:
         return scipy.sparse.csr_matrix(
             (weight[passable], (source[passable], target[passable])), shape=(size, size)
         )
+
+    def _keeps_from_corners(self, starts_m: Float64, ends_m: Float64) -> Bool:
+        """Whether each move [n] between free neighbours keeps the distance all along.
+
+        Both ends do, and a move is shorter than the distance kept: only the corner of a rectangle can come
+        nearer to its middle than to its ends.
+        """
+        along_m = ends_m - starts_m
+        length_m = np.linalg.norm(along_m, axis=1)
+        corners_m = self._obstacles.corners_m
+        keeps = np.ones(len(starts_m), dtype=bool)
+        if not len(keeps) or not len(corners_m):
+            return keeps
+        near = scipy.spatial.cKDTree(corners_m).query_ball_point(
+            (starts_m + ends_m) / 2.0, self._keep_m + length_m / 2.0, return_sorted=False
+        )
+        move = np.repeat(np.arange(len(near)), [len(corners) for corners in near])
+        corner = np.fromiter(itertools.chain.from_iterable(near), dtype=np.intp, count=len(move))
+        to_corner_m = corners_m[corner] - starts_m[move]
+        ahead_m = (to_corner_m * along_m[move]).sum(axis=1) / length_m[move]
+        aside_m = (
+            np.abs(to_corner_m[:, 0] * along_m[move, 1] - to_corner_m[:, 1] * along_m[move, 0])
+            / length_m[move]
+        )
+        meets = (ahead_m > 0.0) & (ahead_m < length_m[move]) & (aside_m < self._keep_m)
+        keeps[move[meets]] = False
+        return keeps
 
     def _straightened(self, corners: list[Point], kept_m: list[float]) -> list[Point]:
         """Fewer corners, without coming closer to anything than the way did where it was comfortable."""

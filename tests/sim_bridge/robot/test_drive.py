@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
 from sim_bridge.homes.home import Home, Rect
-from sim_bridge.robot.drive import Drive, DriveLimits
+from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.obstacles import Obstacles
 
 RADIUS_M, STOP_M, DT_S = 0.15, 0.01, 0.02
@@ -87,6 +87,91 @@ def test_random_commands_never_touch_anything(homes: list[Home], seed: int) -> N
             travelled_m += before.distance_m(drive.pose)
     assert blocked > 10
     assert travelled_m > 3.0
+
+
+def test_a_thousand_wild_velocities_never_touch_anything(homes: list[Home]) -> None:
+    blocked = 0
+    for seed, home in enumerate(homes[:10]):
+        obstacles = Obstacles(home.obstacles(), home.bounds)
+        drive = drive_in(obstacles, home.start)
+        rng = np.random.default_rng(seed)
+        for number in range(100):
+            # Huge ones, tiny ones, and from one extreme to the other.
+            size = 10.0 ** rng.uniform(-3.0, 300.0) if number % 3 == 0 else rng.uniform(0.1, 2.0)
+            wanted = Velocity(
+                linear_m_s=float(size * rng.choice((-1.0, 1.0))),
+                angular_rad_s=float(size * rng.normal() / 3.0),
+            )
+            slip, dt_s = float(rng.choice((0.0, 0.0, 0.4, 1.0))), float(rng.choice((0.002, 0.02)))
+            for _ in range(20):
+                drive.step(wanted, dt_s, slip)
+                clearance_m = obstacles.clearance_m(drive.pose.x_m, drive.pose.y_m)
+                assert clearance_m >= RADIUS_M + STOP_M - 1e-9
+                assert home.bounds.holds(drive.pose.x_m, drive.pose.y_m)
+                blocked += drive.blocked
+    assert blocked > 50
+
+
+@given(st.floats(), st.floats(), st.floats())
+def test_no_velocity_and_no_pose_is_made_of_what_is_no_number(a: float, b: float, c: float) -> None:
+    for make in (lambda: Velocity(linear_m_s=a, angular_rad_s=b), lambda: Pose2D(x_m=a, y_m=b, yaw_rad=c)):
+        try:
+            value = make()
+        except BadMessageError:
+            assert not all(map(math.isfinite, (a, b, c)))
+            continue
+        drive = drive_in(Obstacles([], HALL), Pose2D(x_m=0.0, y_m=0.0))
+        drive.step(value if isinstance(value, Velocity) else STANDSTILL, DT_S)
+        assert all(map(math.isfinite, (drive.pose.x_m, drive.pose.y_m, drive.pose.yaw_rad)))
+
+
+def test_a_standing_robot_is_set_right_by_a_hair_and_by_no_more() -> None:
+    wall = Rect(x_min_m=0.1605, y_min_m=-2.0, x_max_m=0.3, y_max_m=2.0)
+    here = Pose2D(x_m=0.0, y_m=0.0)
+    for pose, settles in (
+        (Pose2D(x_m=-0.0015, y_m=0.001, yaw_rad=0.003), True),
+        (Pose2D(x_m=-0.0015, y_m=0.0, yaw_rad=math.tau), True),
+        (Pose2D(x_m=-0.0025, y_m=0.0), False),
+        (Pose2D(x_m=0.0, y_m=0.0, yaw_rad=0.004), False),
+        (Pose2D(x_m=0.001, y_m=0.0), False),
+    ):
+        drive = drive_in(Obstacles([wall], HALL), here)
+        assert drive.settle(pose) is settles
+        assert drive.pose.distance_m(pose if settles else here) == 0.0
+        assert abs(drive.pose.yaw_rad) < math.pi
+    drive = drive_in(Obstacles([], HALL), here)
+    go(drive, 0.5, 0.0, 0.02)
+    assert not drive.settle(drive.pose)
+
+
+def test_slip_loses_its_share_of_the_motion_and_the_wheels_do_not_notice() -> None:
+    held, free = (drive_in(Obstacles([], HALL), Pose2D(x_m=0.0, y_m=0.0)) for _ in range(2))
+    for _ in range(100):
+        free.step(Velocity(linear_m_s=0.5, angular_rad_s=0.0), DT_S)
+        held.step(Velocity(linear_m_s=0.5, angular_rad_s=0.0), DT_S, 0.75)
+    assert held.velocity == free.velocity
+    assert held.pose.x_m == pytest.approx(0.25 * free.pose.x_m)
+
+
+def test_new_obstacles_stop_the_robot_but_are_not_put_onto_it() -> None:
+    drive = drive_in(Obstacles([], HALL), Pose2D(x_m=0.0, y_m=0.0))
+    before = drive.obstacles
+    for low_m in (-0.1, 0.1, 0.155):
+        onto = Rect(x_min_m=low_m, y_min_m=-1.0, x_max_m=1.0, y_max_m=1.0)
+        with pytest.raises(
+            BadMessageError, match=r"the robot is in the way at \(0.00, 0.00\): .* drive it away"
+        ):
+            drive.replace_obstacles(Obstacles([onto], HALL))
+        assert drive.obstacles is before
+    go(drive, 0.5, 0.0, 2.0)
+    ahead = Rect(x_min_m=drive.pose.x_m + 0.17, y_min_m=-1.0, x_max_m=3.0, y_max_m=1.0)
+    drive.replace_obstacles(Obstacles([ahead], HALL))
+    go(drive, 0.5, 0.0, 1.0)
+    assert drive.blocked
+    assert ahead.x_min_m - drive.pose.x_m >= drive.keep_m
+    drive.replace_obstacles(before)
+    go(drive, 0.5, 0.0, 1.0)
+    assert not drive.blocked
 
 
 def test_a_blocked_robot_turns_and_drives_away() -> None:

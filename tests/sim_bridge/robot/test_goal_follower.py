@@ -148,7 +148,7 @@ def test_what_stands_in_the_way_ends_the_goal(fresh: Simulation, free_poses: Fre
         x_min_m=ahead.x_m - 0.3, y_min_m=ahead.y_m - 0.3, x_max_m=ahead.x_m + 0.3, y_max_m=ahead.y_m + 0.3
     )
     # The planner does not know of it.
-    fresh.drive.obstacles = Obstacles((*fresh.home.obstacles(), post), fresh.home.bounds)
+    fresh.drive.replace_obstacles(Obstacles((*fresh.home.obstacles(), post), fresh.home.bounds))
     drive_to_end(fresh)
     assert "something is in the way" in fresh.follower.problem
     for _ in range(50):
