@@ -154,7 +154,7 @@ def table(
         (depth_m - 2.0 * (inset_m + leg_m), width_m - 2.0 * (inset_m + leg_m), apron_m),
         style.accent,
     )
-    surfaces = (surface_at(depth_m, width_m, height_m),)
+    surfaces: tuple[Surface, ...] = (surface_at(depth_m, width_m, height_m),)
     if hangs:
         surfaces = (*surfaces, wall_behind(depth_m, width_m, height_m))
     return Design(

@@ -67,8 +67,8 @@ def sleeping(style: Style, depth_m: float, pillows: int) -> Design:
                 style.main,
             ),
             box(
-                (middle_x, 0.0, (frame_top_m + mattress_top_m) / 2.0),
-                (lying_m, width_m - 0.06, mattress_top_m - frame_top_m),
+                (middle_x - 0.005, 0.0, (frame_top_m + mattress_top_m) / 2.0),
+                (lying_m - 0.01, width_m - 0.06, mattress_top_m - frame_top_m),
                 LINEN,
             ),
             *heads,
