@@ -39,7 +39,7 @@ from sim_bridge.homes.wishes import (
 WAY_CHECKS = 12
 MIDDLE_TRIES = 40
 # A room whose furniture stands in its own way is begun again so often.
-ROOM_DRAWS = 6
+ROOM_DRAWS = 10
 
 __all__ = ["PASSAGE_RADII_M", "furnish"]
 

@@ -79,7 +79,7 @@ def sleeping(style: Style, depth_m: float, pillows: int) -> Design:
             surface_at(cover_m, width_m - 0.02, top_m, x_m=cover_x),
             wall_behind(depth_m, width_m, height_m),
         ),
-        front_m=0.5,
+        front_m=0.4,
     )
 
 
@@ -155,7 +155,7 @@ def toy_chest(style: Style) -> Design:
 
 TOY_COLOURS = materials("red paint", "yellow paint", "blue paint", "green paint")
 BEDROOM = (
-    FurnitureKind(kind="bed", build=bed, widths_m=(1.40, 1.60), mains=WOODS, accents=COVERS),
+    FurnitureKind(kind="bed", build=bed, widths_m=(1.20, 1.40, 1.60), mains=WOODS, accents=COVERS),
     FurnitureKind(kind="single bed", build=single_bed, widths_m=(0.90, 1.00), mains=WOODS, accents=COVERS),
     FurnitureKind(
         kind="nightstand", build=nightstand, widths_m=(0.40, 0.45), mains=WOODS, accents=(*WOODS, *FRONTS)
@@ -163,7 +163,7 @@ BEDROOM = (
     FurnitureKind(
         kind="wardrobe",
         build=wardrobe,
-        widths_m=(1.00, 1.20, 1.60),
+        widths_m=(0.80, 1.00, 1.20, 1.60),
         mains=WOODS,
         accents=(*WOODS, *materials("white paint", "cream paint")),
     ),
