@@ -4,6 +4,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from enum import StrEnum
 
+from robustnav_msgs_py.errors import BadSceneError
+
 CERTAIN = 1.0
 
 
@@ -148,7 +150,14 @@ MEAL_ROOMS = ("dining room", "kitchen", "living room")
 
 
 def wishes_of(room_kind: str, home_kinds: Collection[str]) -> tuple[Wish, ...]:
-    """What a room of a kind wants in a home that has rooms of `home_kinds`. Raises KeyError if unknown."""
+    """What a room of a kind wants in a home that has rooms of `home_kinds`.
+
+    Raises BadSceneError for a kind of room that nobody knows how to furnish.
+    """
+    if room_kind not in WISHES:
+        raise BadSceneError(
+            f"nobody knows how to furnish a room of the kind {room_kind!r}; there are {', '.join(WISHES)}"
+        )
     wishes = WISHES[room_kind]
     if room_kind == next((kind for kind in MEAL_ROOMS if kind in home_kinds), None):
         # After what the room is for, before what may be missing.

@@ -463,6 +463,11 @@ def test_the_washing_machine_is_in_the_bathroom_only_without_a_laundry_room():
     assert not has(("bathroom", "laundry room"))
 
 
+def test_a_room_of_an_unknown_kind_is_refused_with_all_that_there_are():
+    with pytest.raises(BadSceneError, match="of the kind 'cellar'; there are kitchen, dining room"):
+        wishes_of("cellar", ("cellar",))
+
+
 def test_every_wish_is_for_furniture_that_there_is():
     for room_kind in SIZES:
         for wish in wishes_of(room_kind, (room_kind,)):
