@@ -14,6 +14,7 @@ from sim_bridge.homes.furniture.kitchen import KITCHEN
 from sim_bridge.homes.furniture.laundry_room import LAUNDRY_ROOM
 from sim_bridge.homes.furniture.living_room import LIVING_ROOM
 from sim_bridge.homes.furniture.office import OFFICE
+from sim_bridge.homes.furniture.shelves import SHELVES
 from sim_bridge.homes.home import Furniture
 from sim_bridge.homes.scene import SceneFurniture, Style
 
@@ -23,6 +24,7 @@ KINDS: dict[str, FurnitureKind] = {
         *KITCHEN,
         *DINING_ROOM,
         *LIVING_ROOM,
+        *SHELVES,
         *BEDROOM,
         *OFFICE,
         *BATHROOM,
