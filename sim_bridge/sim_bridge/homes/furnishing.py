@@ -18,6 +18,7 @@ from sim_bridge.homes.placement import (
     around,
     at_walls,
     beside,
+    corners_first,
     in_front,
     in_middle,
     opposite,
@@ -127,7 +128,7 @@ def _grant(rng: np.random.Generator, floor: FreeFloor, room: Room, wish: Wish) -
     elif wish.how is How.FACING:
         granted = _place_facing(rng, floor, room, wish.kinds)
     else:
-        granted = _place_alone(rng, floor, room, wish.kinds[0], in_the_middle=wish.how is How.MIDDLE)
+        granted = _place_alone(rng, floor, room, wish.kinds[0], wish.how)
     if granted:
         host = floor.pieces[first]
         for companion in wish.companions:
@@ -136,15 +137,17 @@ def _grant(rng: np.random.Generator, floor: FreeFloor, room: Room, wish: Wish) -
 
 
 def _place_alone(
-    rng: np.random.Generator, floor: FreeFloor, room: Room, kind: str, *, in_the_middle: bool = False
+    rng: np.random.Generator, floor: FreeFloor, room: Room, kind: str, how: How = How.WALL
 ) -> bool:
-    """At a wall, or in the middle where that is wanted and possible; narrow where it must be."""
+    """At a wall, or in a corner or the middle where wanted and possible; narrow where it must be."""
     style = draw_style(rng, kind)
     for width_m in sorted({style.width_m, min(KINDS[kind].widths_m)}, reverse=True):
         fitted = replace(style, width_m=width_m)
         shape = design(kind, fitted)
         spots = at_walls(rng, room.inside, shape.depth_m, shape.width_m)
-        if in_the_middle:
+        if how is How.CORNER:
+            spots = corners_first(spots, room.inside, shape.width_m)
+        elif how is How.MIDDLE:
             spots = in_middle(rng, room.inside, shape.depth_m, shape.width_m, MIDDLE_TRIES) + spots
         if _put_first(floor, room, ([standing(kind, fitted, shape, room.name, spot)] for spot in spots)):
             return True
@@ -216,7 +219,7 @@ def _place_facing(rng: np.random.Generator, floor: FreeFloor, room: Room, kinds:
         return True
     if not all(_place_alone(rng, floor, room, kind) for kind in kinds[:2]):
         return False
-    _place_alone(rng, floor, room, kinds[2], in_the_middle=True)
+    _place_alone(rng, floor, room, kinds[2], How.MIDDLE)
     return True
 
 

@@ -64,6 +64,20 @@ def at_walls(rng: np.random.Generator, inside: Rect, depth_m: float, width_m: fl
     return [spots[at] for at in rng.permutation(len(spots))]
 
 
+def corners_first(spots: list[Spot], inside: Rect, width_m: float) -> list[Spot]:
+    """Places at walls, those in the corners of the room before all others; their order is kept otherwise."""
+
+    def off_corner(spot: Spot) -> bool:
+        low_m, high_m, at_m = (
+            (inside.y_min_m, inside.y_max_m, spot.y_m)
+            if spot.quarter_turns % 2 == 0
+            else (inside.x_min_m, inside.x_max_m, spot.x_m)
+        )
+        return min(at_m - low_m, high_m - at_m) > width_m / 2.0 + GAP_M + GRID_M / 2.0
+
+    return sorted(spots, key=off_corner)
+
+
 def in_middle(
     rng: np.random.Generator, inside: Rect, depth_m: float, width_m: float, tries: int
 ) -> list[Spot]:

@@ -13,6 +13,7 @@ class How(StrEnum):
     """Where in a room the pieces of a wish belong."""
 
     WALL = "with the back to a wall"
+    CORNER = "with the back to a wall, in a corner where possible"
     MIDDLE = "free-standing, with a way around"
     ROW = "side by side along a wall"
     FACING = "the first at a wall, the second opposite, the third between them"
@@ -58,7 +59,6 @@ OFFICE_CHAIR_AT_DESK = Companion(kind="office chair", where=Where.FRONT, chances
 NIGHTSTANDS = Companion(kind="nightstand", where=Where.SIDE, chances=(CERTAIN, 0.5))
 NIGHTSTAND = Companion(kind="nightstand", where=Where.SIDE, chances=(0.6,))
 SIDE_TABLE = Companion(kind="side table", where=Where.SIDE, chances=(0.6,))
-BATH_MAT = Companion(kind="mat", where=Where.FRONT, chances=(0.5,))
 DINING_TABLE = Wish(
     kinds=("dining table",),
     p=0.95,
@@ -94,7 +94,7 @@ WISHES: dict[str, tuple[Wish, ...]] = {
     ),
     "bedroom": (
         at_wall("bed", CERTAIN, NIGHTSTANDS),
-        at_wall("wardrobe", CERTAIN),
+        Wish(kinds=("wardrobe",), p=CERTAIN, how=How.CORNER),
         at_wall("dresser", 0.7),
         at_wall("desk", 0.3, CHAIR_AT_DESK),
         at_wall("mat", 0.3),
@@ -116,10 +116,12 @@ WISHES: dict[str, tuple[Wish, ...]] = {
         at_wall("armchair", 0.3),
     ),
     "bathroom": (
-        at_wall("toilet", CERTAIN),
+        # First, or it would never find a place; a room where it leaves none for the rest is begun again.
+        Wish(kinds=("bathtub",), p=0.6, how=How.CORNER),
         at_wall("washstand", CERTAIN),
-        at_wall("bathtub", 0.7, BATH_MAT),
+        at_wall("toilet", CERTAIN),
         at_wall("bathroom cabinet", 0.6),
+        at_wall("mat", 0.3),
         at_wall("stool", 0.2),
     ),
     "laundry room": (

@@ -28,7 +28,7 @@ from sim_bridge.homes.home import (
     Window,
 )
 from sim_bridge.homes.materials import material
-from sim_bridge.homes.placement import Spot, snapped
+from sim_bridge.homes.placement import Spot, at_walls, corners_first, snapped
 from sim_bridge.homes.rect import Rect, Side
 from sim_bridge.homes.scene import SceneFurniture
 from sim_bridge.homes.wishes import WISHES, wishes_of
@@ -485,6 +485,29 @@ def test_floor_that_a_piece_would_cut_in_two_is_kept():
     assert not floor.put(room, [standing("kitchen counter", style, shape, "hall", spot)])
     assert floor.pieces == []
     assert floor.is_one_piece()
+
+
+def test_corners_come_first_and_no_place_is_lost():
+    inside = rect(0.0, 0.0, 3.0, 4.0)
+    spots = at_walls(np.random.default_rng(0), inside, 0.6, 1.0)
+    ordered = corners_first(spots, inside, 1.0)
+    assert sorted(map(str, ordered)) == sorted(map(str, spots))
+    # Two for each of four walls: 0.1 + 1.0 / 2 from either end.
+    ends = [(0.6, 3.4) if spot.quarter_turns % 2 == 0 else (0.6, 2.4) for spot in ordered[:8]]
+    at = [spot.y_m if spot.quarter_turns % 2 == 0 else spot.x_m for spot in ordered[:8]]
+    assert all(min(abs(where - end) for end in pair) < 1e-6 for where, pair in zip(at, ends, strict=True))
+    assert len({(spot.x_m, spot.y_m, spot.quarter_turns) for spot in ordered[:8]}) == 8
+
+
+def test_bathrooms_have_room_for_a_bathtub_now_and_then(homes: list[Sample]):
+    tubs = [
+        any(piece.kind == "bathtub" for piece in in_room(sample, room.name))
+        for sample in homes
+        for room in sample.shell.rooms
+        if room.kind == "bathroom"
+    ]
+    assert any(tubs)
+    assert not all(tubs)
 
 
 def test_going_back_to_a_snapshot_takes_away_what_was_put_since():

@@ -23,6 +23,8 @@ from sim_bridge.homes.scene import Style
 from sim_bridge.homes.shapes import Axis, box, cylinder
 
 WATER = material("sky glass")
+# Bathrooms are small: one steps up to things rather than around them.
+FRONT_M = 0.45
 
 
 def washstand(style: Style) -> Design:
@@ -46,6 +48,7 @@ def washstand(style: Style) -> Design:
             cylinder((tap_x + 0.075, y, height_m + 0.17), 0.025, 0.15, STEEL, Axis.X),
         ),
         surfaces=(surface_at(depth_m, width_m - basin_m, height_m, y_m=-basin_m / 2.0),),
+        front_m=FRONT_M,
     )
 
 
@@ -85,6 +88,7 @@ def toilet(style: Style) -> Design:
             ),
         ),
         surfaces=(surface_at(cistern_m, width_m, height_m, x_m=back_x + cistern_m / 2.0),),
+        front_m=FRONT_M,
     )
 
 
@@ -126,6 +130,7 @@ def bathtub(style: Style) -> Design:
         surfaces=(
             surface_at(depth_m - skirt_m, head_m, height_m, x_m=-skirt_m / 2.0, y_m=(width_m - head_m) / 2.0),
         ),
+        front_m=FRONT_M,
     )
 
 
