@@ -1,41 +1,65 @@
-"""How furniture is built from boards and boxes: what the kinds in `furniture` have in common.
+"""How furniture is built from boards, boxes and tubes: what the kinds in `furniture` have in common.
 
 Every design has its own frame: x out of its front, y to its left, the origin on the floor below its
-middle. Footprints are multiples of the floor plan's resolution.
+middle. Nothing of it reaches out of its footprint, or below the floor.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
 
-import numpy as np
+from sim_bridge.homes.home import Surface
+from sim_bridge.homes.materials import Material, material
+from sim_bridge.homes.rect import Rect
+from sim_bridge.homes.scene import Style
+from sim_bridge.homes.shapes import Axis, Part, Vector3, box, cylinder
 
-from sim_bridge.homes.home import Rect, Surface
-from sim_bridge.homes.shapes import Colour, Part, Size, box
-
-T = TypeVar("T")
-
-WOODS: tuple[Colour, ...] = ((0.55, 0.36, 0.20), (0.42, 0.26, 0.15), (0.72, 0.54, 0.34))
-FABRICS: tuple[Colour, ...] = ((0.62, 0.20, 0.18), (0.20, 0.34, 0.52), (0.30, 0.45, 0.30), (0.45, 0.42, 0.40))
-FRONTS: tuple[Colour, ...] = ((0.86, 0.87, 0.88), (0.55, 0.70, 0.66), (0.36, 0.46, 0.58))
-WHITE: Colour = (0.95, 0.95, 0.94)
-STEEL: Colour = (0.70, 0.72, 0.75)
-DARK: Colour = (0.14, 0.14, 0.16)
-STONE: Colour = (0.30, 0.30, 0.33)
-LINEN: Colour = (0.92, 0.90, 0.85)
-
-LEG_M = 0.05
-BOARD_M = 0.04
-HANDLE_M = 0.015
+# Between furniture and anything else, and so between a piece and the wall behind it.
+GAP_M = 0.10
 # Objects keep this far from a surface's edge.
 EDGE_M = 0.03
+LEG_M = 0.05
+BOARD_M = 0.04
+# The skin is a door's or drawer's thickness; handles stand out before it.
+SKIN_M = 0.02
+HANDLE_M = 0.02
+SEAM_M = 0.02
+PLINTH_M = 0.06
+# Where things hang on the wall behind a piece: out of the way of what stands on it, but within the picture of
+# a camera 1.1 m above the floor.
+HANG_LOWEST_M, HANG_HIGHEST_M = 0.95, 1.15
+HANG_ABOVE_M = 0.25
+HANG_SIDE_M = 0.10
+HANG_DEPTH_M = 0.05
+
+
+def materials(*words: str) -> tuple[Material, ...]:
+    """Several materials, each as `material` reads it."""
+    return tuple(material(each) for each in words)
+
+
+WOODS = materials("oak wood", "walnut wood", "cherry wood", "beige wood", "white wood")
+DARK_WOODS = materials("walnut wood", "brown wood", "charcoal wood")
+FABRICS = materials("red fabric", "blue fabric", "green fabric", "grey fabric", "beige fabric", "navy fabric")
+CUSHIONS = materials(
+    "yellow striped fabric", "orange dotted fabric", "cream checked fabric", "turquoise striped fabric"
+)
+COVERS = materials(
+    "blue striped fabric", "red checked fabric", "green striped fabric", "purple dotted fabric", "grey fabric"
+)
+FRONTS = materials("white paint", "turquoise paint", "navy paint", "cream paint", "grey paint", "green paint")
+WHITE_PAINT = material("white paint")
+LINEN = material("cream fabric")
+CERAMIC = material("white ceramic")
+STEEL = material("silver metal")
+BLACK_METAL = material("charcoal metal")
+BLACK_GLASS = material("black glass")
+BLACK_PLASTIC = material("black plastic")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """One piece of furniture, not yet placed. `front_m` is the floor that must stay free before it."""
 
-    kind: str
     depth_m: float
     width_m: float
     height_m: float
@@ -43,6 +67,17 @@ class Design:
     surfaces: tuple[Surface, ...] = ()
     tall: bool = False
     front_m: float = 0.6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FurnitureKind:
+    """A kind of furniture: how it is built from a style, and which styles it comes in."""
+
+    kind: str
+    build: Callable[[Style], Design]
+    widths_m: tuple[float, ...]
+    mains: tuple[Material, ...]
+    accents: tuple[Material, ...]
 
 
 def surface_at(
@@ -58,108 +93,145 @@ def surface_at(
     return Surface(area=area, height_m=height_m)
 
 
-def legs(size_m: Size, colour: Colour, inset_m: float = 0.0) -> tuple[Part, ...]:
+def wall_behind(depth_m: float, width_m: float, height_m: float) -> Surface:
+    """Where things hang on the wall behind a piece of this size that stands GAP_M before it."""
+    area = Rect(
+        x_min_m=-depth_m / 2.0 - GAP_M,
+        y_min_m=-width_m / 2.0 + HANG_SIDE_M,
+        x_max_m=-depth_m / 2.0 - GAP_M + HANG_DEPTH_M,
+        y_max_m=width_m / 2.0 - HANG_SIDE_M,
+    )
+    lowest_m = min(HANG_HIGHEST_M, max(HANG_LOWEST_M, height_m + HANG_ABOVE_M))
+    return Surface(area=area, height_m=lowest_m, hangs=True)
+
+
+def legs(
+    size_m: Vector3, stuff: Material, inset_m: float = 0.0, thickness_m: float = LEG_M
+) -> tuple[Part, ...]:
     """Four square legs in the corners of a footprint, as high as `size_m` says."""
-    x, y = size_m[0] / 2.0 - LEG_M / 2.0 - inset_m, size_m[1] / 2.0 - LEG_M / 2.0 - inset_m
+    x = size_m[0] / 2.0 - thickness_m / 2.0 - inset_m
+    y = size_m[1] / 2.0 - thickness_m / 2.0 - inset_m
     return tuple(
-        box((sx * x, sy * y, size_m[2] / 2.0), (LEG_M, LEG_M, size_m[2]), colour)
+        box((sx * x, sy * y, size_m[2] / 2.0), (thickness_m, thickness_m, size_m[2]), stuff)
         for sx in (-1, 1)
         for sy in (-1, 1)
     )
 
 
-def table(kind: str, depth_m: float, width_m: float, height_m: float, wood: Colour, front_m: float) -> Design:
-    """A board on four legs."""
-    top = box((0.0, 0.0, height_m - BOARD_M / 2.0), (depth_m, width_m, BOARD_M), wood)
-    darker = (wood[0] * 0.7, wood[1] * 0.7, wood[2] * 0.7)
+def ring(outer: Rect, inner: Rect, z_m: tuple[float, float], stuff: Material) -> tuple[Part, ...]:
+    """Four boxes around a hole, from z_m[0] up to z_m[1]."""
+    strips = (
+        Rect(x_min_m=outer.x_min_m, y_min_m=outer.y_min_m, x_max_m=inner.x_min_m, y_max_m=outer.y_max_m),
+        Rect(x_min_m=inner.x_max_m, y_min_m=outer.y_min_m, x_max_m=outer.x_max_m, y_max_m=outer.y_max_m),
+        Rect(x_min_m=inner.x_min_m, y_min_m=outer.y_min_m, x_max_m=inner.x_max_m, y_max_m=inner.y_min_m),
+        Rect(x_min_m=inner.x_min_m, y_min_m=inner.y_max_m, x_max_m=inner.x_max_m, y_max_m=outer.y_max_m),
+    )
+    return tuple(slab(strip, z_m, stuff) for strip in strips)
+
+
+def slab(area: Rect, z_m: tuple[float, float], stuff: Material) -> Part:
+    """A box over a rectangle of the design's frame, from z_m[0] up to z_m[1]."""
+    x_m, y_m = area.centre_m
+    return box((x_m, y_m, (z_m[0] + z_m[1]) / 2.0), (area.width_m, area.depth_m, z_m[1] - z_m[0]), stuff)
+
+
+def table(
+    style: Style,
+    depth_m: float,
+    height_m: float,
+    *,
+    front_m: float,
+    leg_m: float = LEG_M,
+    hangs: bool = False,
+) -> Design:
+    """A board of the main material on four legs of the accent, with an apron under it."""
+    width_m = style.width_m
+    apron_m, inset_m = 0.06, 0.03
+    under_m = height_m - BOARD_M
+    top = box((0.0, 0.0, height_m - BOARD_M / 2.0), (depth_m, width_m, BOARD_M), style.main)
+    apron = box(
+        (0.0, 0.0, under_m - apron_m / 2.0),
+        (depth_m - 2.0 * (inset_m + leg_m), width_m - 2.0 * (inset_m + leg_m), apron_m),
+        style.accent,
+    )
+    surfaces: tuple[Surface, ...] = (surface_at(depth_m, width_m, height_m),)
+    if hangs:
+        surfaces = (*surfaces, wall_behind(depth_m, width_m, height_m))
     return Design(
-        kind=kind,
         depth_m=depth_m,
         width_m=width_m,
         height_m=height_m,
-        parts=(top, *legs((depth_m, width_m, height_m - BOARD_M), darker)),
-        surfaces=(surface_at(depth_m, width_m, height_m),),
+        parts=(top, apron, *legs((depth_m, width_m, under_m), style.accent, inset_m, leg_m)),
+        surfaces=surfaces,
         front_m=front_m,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fronts:
+    """The doors or drawers of a chest: `columns` by `rows` panels between two heights."""
+
+    columns: int
+    rows: int
+    stuff: Material
+    handles: Material = STEEL
+
+    def parts(self, depth_m: float, width_m: float, z_m: tuple[float, float]) -> tuple[Part, ...]:
+        """The panels with a handle each; they fill SKIN_M + HANDLE_M of the depth behind the front."""
+        panel_w = (width_m - SEAM_M) / self.columns - SEAM_M
+        panel_h = (z_m[1] - z_m[0]) / self.rows - SEAM_M
+        panel_x = depth_m / 2.0 - HANDLE_M - SKIN_M / 2.0
+        found = []
+        for column in range(self.columns):
+            y = -width_m / 2.0 + SEAM_M + panel_w / 2.0 + column * (panel_w + SEAM_M)
+            for row in range(self.rows):
+                z = z_m[0] + panel_h / 2.0 + row * (panel_h + SEAM_M)
+                found.append(box((panel_x, y, z), (SKIN_M, panel_w, panel_h), self.stuff))
+                found.append(self._handle(depth_m, (y, z), (panel_w, panel_h), column))
+        return tuple(found)
+
+    def _handle(
+        self, depth_m: float, at_m: tuple[float, float], panel_m: tuple[float, float], column: int
+    ) -> Part:
+        """A bar: across drawers, upright at the edge of doors, which open in pairs."""
+        x, (y, z), (panel_w, panel_h) = depth_m / 2.0 - HANDLE_M / 2.0, at_m, panel_m
+        if panel_w >= panel_h:
+            return cylinder(
+                (x, y, z + panel_h * 0.2), HANDLE_M, min(0.16, panel_w * 0.4), self.handles, Axis.Y
+            )
+        side = 1 if column % 2 == 0 else -1
+        return cylinder(
+            (x, y + side * (panel_w / 2.0 - 0.05), z), HANDLE_M, min(0.2, panel_h * 0.4), self.handles
+        )
 
 
 def chest(
-    kind: str,
-    size_m: Size,
-    body: Colour,
-    front: Colour,
-    columns: int,
-    rows: int,
-    top: Colour | None = None,
+    size_m: Vector3,
+    body: Material,
+    fronts: Fronts,
+    top: Material | None = None,
     *,
     tall: bool = False,
+    hangs: bool = False,
     front_m: float = 0.6,
 ) -> Design:
-    """A body with a grid of doors or drawers in front, each with a handle, and a top board."""
+    """A body with a grid of doors or drawers in front and a top board. Tall ones carry nothing."""
     depth_m, width_m, height_m = size_m
-    skin_m, gap_m, plinth_m = 0.02, 0.02, 0.06
-    body_height_m = height_m - BOARD_M
-    parts = [
-        box((-skin_m / 2.0, 0.0, body_height_m / 2.0), (depth_m - skin_m, width_m, body_height_m), body),
-        box((0.0, 0.0, height_m - BOARD_M / 2.0), (depth_m, width_m, BOARD_M), top or body),
-    ]
-    panel_w = (width_m - gap_m) / columns - gap_m
-    panel_h = (body_height_m - plinth_m) / rows - gap_m
-    x = depth_m / 2.0 - skin_m / 2.0
-    for column in range(columns):
-        y = -width_m / 2.0 + gap_m + panel_w / 2.0 + column * (panel_w + gap_m)
-        for row in range(rows):
-            z = plinth_m + panel_h / 2.0 + row * (panel_h + gap_m)
-            parts.append(box((x, y, z), (skin_m, panel_w, panel_h), front))
-    handle_h = min(0.2, panel_h * 0.5)
-    for column in range(columns):
-        y = -width_m / 2.0 + gap_m + panel_w / 2.0 + column * (panel_w + gap_m)
-        parts.append(
-            box((x, y + panel_w * 0.35, height_m * 0.55), (skin_m + HANDLE_M, HANDLE_M, handle_h), DARK)
-        )
-    surfaces = () if tall else (surface_at(depth_m, width_m, height_m),)
+    body_m = height_m - BOARD_M
+    before_m = SKIN_M + HANDLE_M
+    surfaces: tuple[Surface, ...] = () if tall else (surface_at(depth_m, width_m, height_m),)
+    if hangs:
+        surfaces = (*surfaces, wall_behind(depth_m, width_m, height_m))
     return Design(
-        kind=kind,
         depth_m=depth_m,
         width_m=width_m,
         height_m=height_m,
-        parts=tuple(parts),
+        parts=(
+            box((-before_m / 2.0, 0.0, body_m / 2.0), (depth_m - before_m, width_m, body_m), body),
+            box((0.0, 0.0, height_m - BOARD_M / 2.0), (depth_m, width_m, BOARD_M), top or body),
+            *fronts.parts(depth_m, width_m, (PLINTH_M, body_m)),
+        ),
         surfaces=surfaces,
         tall=tall,
         front_m=front_m,
-    )
-
-
-def pick(rng: np.random.Generator, options: Sequence[T]) -> T:
-    """One of the options."""
-    return options[int(rng.integers(len(options)))]
-
-
-def seating(kind: str, width_m: float, fabric: Colour, cushions: int) -> Design:
-    """A sofa or an armchair: base, back, two arms and seat cushions."""
-    depth_m, seat_m, height_m, arm_m, back_m = 0.85, 0.42, 0.80, 0.15, 0.20
-    lighter = (min(1.0, fabric[0] * 1.25), min(1.0, fabric[1] * 1.25), min(1.0, fabric[2] * 1.25))
-    cushion_h, foot_m = 0.14, 0.10
-    inner_m = width_m - 2 * arm_m
-    base_m, rise_m = seat_m - cushion_h - foot_m, height_m - foot_m
-    parts = [
-        box((0.0, 0.0, foot_m + base_m / 2.0), (depth_m, width_m, base_m), fabric),
-        box((-(depth_m - back_m) / 2.0, 0.0, foot_m + rise_m / 2.0), (back_m, width_m, rise_m), fabric),
-        *legs((depth_m, width_m, foot_m), DARK, inset_m=0.05),
-    ]
-    for sign in (-1, 1):
-        y = sign * (width_m - arm_m) / 2.0
-        parts.append(box((0.0, y, 0.35), (depth_m, arm_m, 0.50), fabric))
-    for index in range(cushions):
-        cushion_w = inner_m / cushions
-        y = -inner_m / 2.0 + cushion_w * (index + 0.5)
-        size = (depth_m - back_m, cushion_w - 0.01, cushion_h)
-        parts.append(box((back_m / 2.0, y, seat_m - cushion_h / 2.0), size, lighter))
-    return Design(
-        kind=kind,
-        depth_m=depth_m,
-        width_m=width_m,
-        height_m=height_m,
-        parts=tuple(parts),
-        surfaces=(surface_at(depth_m - back_m, inner_m, seat_m, x_m=back_m / 2.0),),
     )

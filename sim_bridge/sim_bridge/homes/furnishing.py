@@ -1,284 +1,260 @@
-"""Which furniture a room wants, and where it finds its place without closing the robot's way."""
+"""A shell of rooms is furnished: every room gets what it is for, and the robot can still go everywhere."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.carpentry import Design
-from sim_bridge.homes.furniture import BUILDERS
-from sim_bridge.homes.home import Door, Furniture, Rect, Room
-from sim_bridge.homes.rooms import Layout, snapped
-from sim_bridge.robot.obstacles import ClearanceGrid
+from sim_bridge.homes.free_floor import PASSAGE_RADII_M, FreeFloor, Shell, Standing, standing
+from sim_bridge.homes.furniture.catalogue import KINDS, design, draw_style
+from sim_bridge.homes.home import Room
+from sim_bridge.homes.placement import (
+    OPPOSITE_M,
+    TABLE_GAP_M,
+    Spot,
+    along_row,
+    around,
+    at_walls,
+    beside,
+    corners_first,
+    in_front,
+    in_middle,
+    opposite,
+)
+from sim_bridge.homes.scene import SceneFurniture, Style
+from sim_bridge.homes.wishes import (
+    CERTAIN,
+    DINING_TABLE,
+    MIN_PIECES,
+    MIN_PIECES_OF,
+    Companion,
+    How,
+    Where,
+    Wish,
+    wishes_of,
+)
 
-# Between furniture and anything else.
-GAP_M = 0.10
-DOOR_ZONE_M = 0.80
-DOOR_ZONE_SIDE_M = 0.10
-FREE_STANDING_M = 0.55
-TRIES = 40
-CERTAIN = 1.0
-# The floor must be in one piece for robots of all these radii: ours with the distance that it keeps, and
-# planners that keep more.
-PASSAGE_RADII_M = (0.16, 0.18, 0.21, 0.25, 0.30)
+# Whether the robot still gets everywhere is asked of so many places that fit, for one piece.
+WAY_CHECKS = 12
+MIDDLE_TRIES = 40
+# A room whose furniture stands in its own way is begun again so often.
+ROOM_DRAWS = 10
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Companion:
-    """A piece that comes with another: `around` it, in `front` of it, or at its `side`."""
-
-    kind: str
-    where: str
-    chances: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
-    """A piece of furniture that a room has with probability `p`; certain ones must find a place."""
-
-    kind: str
-    p: float
-    free_standing: bool = False
-    companions: tuple[Companion, ...] = ()
-
-
-CHAIR_AT_DESK = Companion(kind="chair", where="front", chances=(0.9,))
-CHAIRS = Companion(kind="chair", where="around", chances=(1.0, 0.9, 0.6, 0.3))
-NIGHTSTANDS = Companion(kind="nightstand", where="side", chances=(1.0, 0.5))
-WISHES: dict[str, tuple[Wish, ...]] = {
-    "kitchen": (
-        Wish(kind="kitchen counter", p=CERTAIN),
-        Wish(kind="fridge", p=CERTAIN),
-        Wish(kind="dining table", p=0.95, free_standing=True, companions=(CHAIRS,)),
-        Wish(kind="cupboard", p=0.6),
-    ),
-    "living room": (
-        Wish(kind="sofa", p=CERTAIN),
-        Wish(kind="tv stand", p=CERTAIN),
-        Wish(kind="coffee table", p=0.9, free_standing=True),
-        Wish(kind="bookcase", p=0.8),
-        Wish(kind="armchair", p=0.6),
-        Wish(kind="sideboard", p=0.7),
-    ),
-    "bedroom": (
-        Wish(kind="bed", p=CERTAIN, companions=(NIGHTSTANDS,)),
-        Wish(kind="wardrobe", p=CERTAIN),
-        Wish(kind="dresser", p=0.7),
-        Wish(kind="desk", p=0.3, companions=(CHAIR_AT_DESK,)),
-    ),
-    "bathroom": (
-        Wish(kind="washstand", p=CERTAIN),
-        Wish(kind="washing machine", p=0.8),
-        Wish(kind="bathroom cabinet", p=0.7),
-    ),
-    "study": (
-        Wish(kind="desk", p=CERTAIN, companions=(CHAIR_AT_DESK,)),
-        Wish(kind="bookcase", p=0.9),
-        Wish(kind="sideboard", p=0.7),
-        Wish(kind="armchair", p=0.5),
-    ),
-}
+__all__ = ["PASSAGE_RADII_M", "furnish"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Place:
-    """Where a design would stand: its middle, and which way its front looks."""
+def furnish(rng: np.random.Generator, shell: Shell) -> tuple[SceneFurniture, ...]:
+    """Furnish every room, named "KIND NUMBER" over the whole home.
 
-    x_m: float
-    y_m: float
-    quarter_turns: int
-
-
-@dataclass(slots=True)
-class _State:
-    """What stands already; grows while a home is furnished."""
-
-    grid: ClearanceGrid
-    doors: tuple[Door, ...]
-    placed: list[Furniture] = field(default_factory=list)
-    # The floor that must stay free before a piece, by the piece's name.
-    fronts: dict[str, Rect] = field(default_factory=dict)
-    count: dict[str, int] = field(default_factory=dict)
-
-
-def furnish(rng: np.random.Generator, layout: Layout, resolution_m: float) -> tuple[Furniture, ...]:
-    """Furnish every room. Raises BadSceneError where a certain piece finds no place; draw again then."""
-    low_walls = [wall.base for wall in layout.walls if wall.z_min_m == 0.0]
-    grid = ClearanceGrid(layout.bounds, resolution_m).with_rects(low_walls)
-    state = _State(grid, layout.doors)
-    for room in layout.rooms:
-        for wish in WISHES[room.kind]:
-            if wish.p < CERTAIN and rng.random() >= wish.p:
-                continue
-            design = BUILDERS[wish.kind](rng)
-            places = _free_standing(rng, room, design) if wish.free_standing else _at_wall(rng, room, design)
-            piece = _try(state, room, design, places)
-            if piece is None and wish.p >= CERTAIN:
-                raise BadSceneError(f"the {wish.kind} finds no place in the {room.name}")
-            if piece is not None:
-                _add_companions(rng, state, room, wish, piece)
-    return tuple(state.placed)
-
-
-def _add_companions(rng: np.random.Generator, state: _State, room: Room, wish: Wish, host: Furniture) -> None:
-    for companion in wish.companions:
-        design = BUILDERS[companion.kind](rng)
-        places = _PLACES[companion.where](design, host)
-        for chance in companion.chances:
-            if rng.random() < chance:
-                order = rng.permutation(len(places))
-                _try(state, room, design, iter([places[at] for at in order]), host)
-
-
-def _at_wall(rng: np.random.Generator, room: Room, design: Design) -> Iterator[_Place]:
-    """Places with the back to a wall."""
-    inside = room.inside
-    for _ in range(TRIES):
-        turns = int(rng.integers(4))
-        along_m = inside.depth_m if turns % 2 == 0 else inside.width_m
-        spare_m = along_m - design.width_m - 2.0 * GAP_M
-        if spare_m < 0.0:
-            continue
-        along = GAP_M + snapped(rng.uniform(0.0, spare_m)) + design.width_m / 2.0
-        back = GAP_M + design.depth_m / 2.0
-        x_m, y_m = (
-            (inside.x_min_m + back, inside.y_min_m + along),
-            (inside.x_min_m + along, inside.y_min_m + back),
-            (inside.x_max_m - back, inside.y_min_m + along),
-            (inside.x_min_m + along, inside.y_max_m - back),
-        )[turns]
-        yield _Place(x_m=x_m, y_m=y_m, quarter_turns=turns)
-
-
-def _free_standing(rng: np.random.Generator, room: Room, design: Design) -> Iterator[_Place]:
-    """Places in the middle of the room, with a way around."""
-    for _ in range(TRIES):
-        turns = int(rng.integers(2))
-        size_x, size_y = (design.depth_m, design.width_m) if turns == 0 else (design.width_m, design.depth_m)
-        spare_x = room.inside.width_m - size_x - 2.0 * FREE_STANDING_M
-        spare_y = room.inside.depth_m - size_y - 2.0 * FREE_STANDING_M
-        if spare_x < 0.0 or spare_y < 0.0:
-            continue
-        x_m = room.inside.x_min_m + FREE_STANDING_M + snapped(rng.uniform(0.0, spare_x)) + size_x / 2.0
-        y_m = room.inside.y_min_m + FREE_STANDING_M + snapped(rng.uniform(0.0, spare_y)) + size_y / 2.0
-        yield _Place(x_m=x_m, y_m=y_m, quarter_turns=turns)
-
-
-def _in_front(design: Design, host: Furniture) -> list[_Place]:
-    x_m, y_m = host.point_in_map((host.depth_m + design.depth_m) / 2.0 + GAP_M, 0.0)
-    return [_aligned(design, _Place(x_m=x_m, y_m=y_m, quarter_turns=(host.quarter_turns + 2) % 4))]
-
-
-def _around(design: Design, host: Furniture) -> list[_Place]:
-    """Facing the host: two on each long side (along its y), one on each short side."""
-    long_x = (host.depth_m + design.depth_m) / 2.0 + GAP_M
-    short_y = (host.width_m + design.depth_m) / 2.0 + GAP_M
-    seats = [(sign * long_x, y, 2 if sign > 0 else 0) for sign in (1, -1) for y in (-0.3, 0.3)]
-    seats += [(0.0, short_y, 3), (0.0, -short_y, 1)]
-    places = []
-    for x, y, turns in seats:
-        x_m, y_m = host.point_in_map(x, y)
-        places.append(
-            _aligned(design, _Place(x_m=x_m, y_m=y_m, quarter_turns=(host.quarter_turns + turns) % 4))
+    Raises BadSceneError where a room is too small for what it is for, or the bare floor is not in one piece
+    for a robot of each of PASSAGE_RADII_M; draw again then.
+    """
+    floor = FreeFloor(shell)
+    if not floor.is_one_piece():
+        raise BadSceneError(
+            f"the floor of {len(shell.rooms)} rooms is not in one piece for robots of {PASSAGE_RADII_M!r} m "
+            "radius before any furniture is in; every room needs a door that is wide enough"
         )
-    return places
+    kinds = [room.kind for room in shell.rooms]
+    for room in shell.rooms:
+        _furnish_room(rng, floor, room, wishes_of(room.kind, kinds))
+    if not any(piece.kind == "dining table" for piece in floor.pieces):
+        for room in shell.rooms:
+            if room.kind == "living room" and _grant(rng, floor, room, DINING_TABLE):
+                break
+    return _named(floor.pieces)
 
 
-def _beside(design: Design, host: Furniture) -> list[_Place]:
-    """To the left and right, backs in one line."""
-    back_x = (design.depth_m - host.depth_m) / 2.0
-    side_y = (host.width_m + design.width_m) / 2.0 + GAP_M
-    places = []
-    for sign in (1, -1):
-        x_m, y_m = host.point_in_map(back_x, sign * side_y)
-        places.append(_aligned(design, _Place(x_m=x_m, y_m=y_m, quarter_turns=host.quarter_turns)))
-    return places
-
-
-_PLACES = {"front": _in_front, "around": _around, "side": _beside}
-
-
-def _aligned(design: Design, place: _Place) -> _Place:
-    """The place moved so that the footprint's edges lie on the floor plan's grid."""
-    even = place.quarter_turns % 2 == 0
-    half_x, half_y = (design.depth_m, design.width_m) if even else (design.width_m, design.depth_m)
-    return _Place(
-        x_m=snapped(place.x_m - half_x / 2.0) + half_x / 2.0,
-        y_m=snapped(place.y_m - half_y / 2.0) + half_y / 2.0,
-        quarter_turns=place.quarter_turns,
-    )
-
-
-def _try(
-    state: _State, room: Room, design: Design, places: Iterator[_Place], host: Furniture | None = None
-) -> Furniture | None:
-    """Put the design on the first place that fits; None where none does."""
-    for place in places:
-        number = state.count.get(design.kind, 0) + 1
-        piece = Furniture(
-            name=f"{design.kind} {number}",
-            kind=design.kind,
-            room=room.name,
-            x_m=round(place.x_m, 6),
-            y_m=round(place.y_m, 6),
-            quarter_turns=place.quarter_turns,
-            depth_m=design.depth_m,
-            width_m=design.width_m,
-            height_m=design.height_m,
-            tall=design.tall,
-            surfaces=design.surfaces,
-            parts=design.parts,
+def _named(pieces: Iterable[Standing]) -> tuple[SceneFurniture, ...]:
+    count: dict[str, int] = {}
+    found = []
+    for piece in pieces:
+        count[piece.kind] = count.get(piece.kind, 0) + 1
+        found.append(
+            SceneFurniture(
+                name=f"{piece.kind} {count[piece.kind]}",
+                kind=piece.kind,
+                room=piece.room,
+                x_m=piece.spot.x_m,
+                y_m=piece.spot.y_m,
+                quarter_turns=piece.spot.quarter_turns,
+                style=piece.style,
+            )
         )
-        front = _front(piece, design.front_m)
-        if not _fits(state, room, piece, front, host):
-            continue
-        grid = state.grid.with_rects((piece.footprint,))
-        if any(grid.regions(radius_m) != 1 for radius_m in PASSAGE_RADII_M):
-            continue
-        state.grid = grid
-        state.placed.append(piece)
-        state.count[design.kind] = number
-        if front is not None:
-            state.fronts[piece.name] = front
-        return piece
+    return tuple(found)
+
+
+def _furnish_room(rng: np.random.Generator, floor: FreeFloor, room: Room, wishes: tuple[Wish, ...]) -> None:
+    before = floor.snapshot()
+    for _ in range(ROOM_DRAWS):
+        problem = _try_room(rng, floor, room, wishes)
+        if problem is None:
+            return
+        floor.restore(before)
+    raise BadSceneError(f"{problem} in {ROOM_DRAWS} draws; the room needs more floor, or fewer doors")
+
+
+def _try_room(rng: np.random.Generator, floor: FreeFloor, room: Room, wishes: tuple[Wish, ...]) -> str | None:
+    """Grant the wishes that come true; what went wrong, or None."""
+    left = []
+    for wish in wishes:
+        if rng.random() >= wish.p:
+            left.append(wish)
+        elif not _grant(rng, floor, room, wish) and wish.p >= CERTAIN:
+            return f"the {wish.kinds[0]} finds no place in the {room.name} ({room.inside.area_m2:.1f} m2)"
+    # A room that chance, or a lack of places, has left too bare gets what it did not ask for.
+    for wish in left:
+        if not _is_bare(floor, room):
+            break
+        _grant(rng, floor, room, wish)
+    if _is_bare(floor, room):
+        return f"the {room.name} ({room.inside.area_m2:.1f} m2) has too few places for furniture"
     return None
 
 
-def _front(piece: Furniture, front_m: float) -> Rect | None:
-    if front_m <= 0.0:
-        return None
-    x_m = piece.depth_m / 2.0
-    return piece.in_map(
-        Rect(x_min_m=x_m, y_min_m=-piece.width_m / 2.0, x_max_m=x_m + front_m, y_max_m=piece.width_m / 2.0)
-    )
+def _is_bare(floor: FreeFloor, room: Room) -> bool:
+    pieces = floor.in_room(room)
+    few = len(pieces) < MIN_PIECES_OF.get(room.kind, MIN_PIECES)
+    return few or not any(piece.carries for piece in pieces)
 
 
-def _fits(state: _State, room: Room, piece: Furniture, front: Rect | None, host: Furniture | None) -> bool:
-    footprint = piece.footprint
-    if not room.inside.grown(-GAP_M).contains(footprint):
-        return False
-    if front is not None and not room.inside.contains(front):
-        return False
-    if any(footprint.overlaps(_door_zone(door)) for door in state.doors):
-        return False
-    kept = footprint.grown(GAP_M)
-    for other in state.placed:
-        zone = state.fronts.get(other.name)
-        if kept.overlaps(other.footprint) or (front is not None and front.overlaps(other.footprint)):
+def _grant(rng: np.random.Generator, floor: FreeFloor, room: Room, wish: Wish) -> bool:
+    """Place the wish's pieces and their companions; False where one of the pieces finds no place."""
+    first = len(floor.pieces)
+    if wish.how is How.ROW:
+        granted = _place_row(rng, floor, room, wish.kinds)
+    elif wish.how is How.FACING:
+        granted = _place_facing(rng, floor, room, wish.kinds)
+    else:
+        granted = _place_alone(rng, floor, room, wish.kinds[0], wish.how)
+    if granted:
+        host = floor.pieces[first]
+        for companion in wish.companions:
+            _add_companions(rng, floor, room, companion, host)
+    return granted
+
+
+def _place_alone(
+    rng: np.random.Generator, floor: FreeFloor, room: Room, kind: str, how: How = How.WALL
+) -> bool:
+    """At a wall, or in a corner or the middle where wanted and possible; narrow where it must be."""
+    style = draw_style(rng, kind)
+    for width_m in sorted({style.width_m, min(KINDS[kind].widths_m)}, reverse=True):
+        fitted = replace(style, width_m=width_m)
+        shape = design(kind, fitted)
+        spots = at_walls(rng, room.inside, shape.depth_m, shape.width_m)
+        if how is How.CORNER:
+            spots = corners_first(spots, room.inside, shape.width_m)
+        elif how is How.MIDDLE:
+            spots = in_middle(rng, room.inside, shape.depth_m, shape.width_m, MIDDLE_TRIES) + spots
+        if _put_first(floor, room, ([standing(kind, fitted, shape, room.name, spot)] for spot in spots)):
+            return True
+    return False
+
+
+def _put_first(
+    floor: FreeFloor, room: Room, groups: Iterable[list[Standing]], host: Standing | None = None
+) -> bool:
+    """Put the first group of pieces that fits and leaves the robot its ways."""
+    checks = 0
+    for group in groups:
+        if checks == WAY_CHECKS:
             return False
-        if zone is not None and other is not host and footprint.overlaps(zone):
-            return False
+        if all(floor.fits(room, piece, host) for piece in group):
+            checks += 1
+            if floor.put(room, group):
+                return True
+    return False
+
+
+def _place_row(rng: np.random.Generator, floor: FreeFloor, room: Room, kinds: tuple[str, ...]) -> bool:
+    """Side by side along one wall; where no wall is long enough, the last stands elsewhere, and so on."""
+    styles = _matching_styles(rng, kinds)
+    narrow = [
+        replace(style, width_m=min(KINDS[kind].widths_m)) for kind, style in zip(kinds, styles, strict=True)
+    ]
+    for choice in (styles, narrow):
+        members = list(zip(kinds, choice, strict=True))
+        # Only the last may be tall, and then it ends the row at either side.
+        if rng.random() < 0.5:
+            members.reverse()
+        if _put_first(floor, room, _rows(rng, room, members)):
+            return True
+    if len(kinds) == 1:
+        return False
+    return _place_row(rng, floor, room, kinds[:-1]) and _place_row(rng, floor, room, kinds[-1:])
+
+
+def _rows(rng: np.random.Generator, room: Room, members: list[tuple[str, Style]]) -> Iterable[list[Standing]]:
+    shapes = [design(kind, style) for kind, style in members]
+    depths, widths = [shape.depth_m for shape in shapes], [shape.width_m for shape in shapes]
+    for row in at_walls(rng, room.inside, max(depths), sum(widths)):
+        yield [
+            standing(kind, style, shape, room.name, spot)
+            for (kind, style), shape, spot in zip(
+                members, shapes, along_row(row, depths, widths), strict=True
+            )
+        ]
+
+
+def _matching_styles(rng: np.random.Generator, kinds: tuple[str, ...]) -> list[Style]:
+    """Styles of pieces that were bought together: the same materials wherever a kind comes in them."""
+    styles: list[Style] = []
+    for kind in kinds:
+        entry, style = KINDS[kind], draw_style(rng, kind)
+        main = next((other.main for other in styles if other.main in entry.mains), style.main)
+        accent = next((other.accent for other in styles if other.accent in entry.accents), style.accent)
+        styles.append(replace(style, main=main, accent=accent))
+    return styles
+
+
+def _place_facing(rng: np.random.Generator, floor: FreeFloor, room: Room, kinds: tuple[str, ...]) -> bool:
+    """The second opposite the first, the third before the first; each alone where the room is too small."""
+    styles = [draw_style(rng, kind) for kind in kinds]
+    shapes = [design(kind, style) for kind, style in zip(kinds, styles, strict=True)]
+    groups = list(_facing(rng, room, kinds, styles, shapes))
+    if _put_first(floor, room, groups) or _put_first(floor, room, (group[:2] for group in groups)):
+        return True
+    if not all(_place_alone(rng, floor, room, kind) for kind in kinds[:2]):
+        return False
+    _place_alone(rng, floor, room, kinds[2], How.MIDDLE)
     return True
 
 
-def _door_zone(door: Door) -> Rect:
-    """The floor on both sides of a door that furniture stays out of."""
-    opening = door.opening
-    beyond_x, beyond_y = (DOOR_ZONE_SIDE_M, DOOR_ZONE_M) if door.along_x else (DOOR_ZONE_M, DOOR_ZONE_SIDE_M)
-    return Rect(
-        x_min_m=opening.x_min_m - beyond_x,
-        y_min_m=opening.y_min_m - beyond_y,
-        x_max_m=opening.x_max_m + beyond_x,
-        y_max_m=opening.y_max_m + beyond_y,
-    )
+def _facing(
+    rng: np.random.Generator, room: Room, kinds: tuple[str, ...], styles: list[Style], shapes: list[Design]
+) -> Iterable[list[Standing]]:
+    host, across, between = shapes
+    for spot in at_walls(rng, room.inside, host.depth_m, host.width_m):
+        ahead, floor_m = opposite(room.inside, spot, host.depth_m, across)
+        if floor_m < TABLE_GAP_M + between.depth_m + OPPOSITE_M:
+            continue
+        spots = (spot, ahead, in_front(spot, host.depth_m, between, TABLE_GAP_M))
+        yield [
+            standing(kind, style, shape, room.name, place)
+            for kind, style, shape, place in zip(kinds, styles, shapes, spots, strict=True)
+        ]
+
+
+def _add_companions(
+    rng: np.random.Generator, floor: FreeFloor, room: Room, companion: Companion, host: Standing
+) -> None:
+    kind, style = companion.kind, draw_style(rng, companion.kind)
+    shape = design(kind, style)
+    for chance in companion.chances:
+        if rng.random() >= chance:
+            continue
+        spots = _companion_spots(companion.where, host, shape)
+        order = rng.permutation(len(spots))
+        groups = ([standing(kind, style, shape, room.name, spots[at])] for at in order)
+        _put_first(floor, room, groups, host)
+
+
+def _companion_spots(where: Where, host: Standing, guest: Design) -> list[Spot]:
+    if where is Where.AROUND:
+        return around(host.spot, host.shape, guest)
+    if where is Where.SIDE:
+        return beside(host.spot, host.shape, guest)
+    return [in_front(host.spot, host.shape.depth_m, guest)]

@@ -1,0 +1,1 @@
+"""The kinds of furniture, room by room; `catalogue` knows them all."""
