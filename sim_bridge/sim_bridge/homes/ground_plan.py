@@ -41,32 +41,53 @@ def draw_ground_plan(rng: np.random.Generator, programme: Sequence[ProgrammeRoom
     The plan's lower left corner is the origin. None where this draw failed; draw again then.
     """
     kinds = [room.kind for room in programme]
+    beside = [kinds_beside(kinds, number) for number in range(len(kinds))]
     middle = kinds.index("hallway") if "hallway" in kinds else _middle_room(rng, programme)
     ground = _middle_area(rng, programme[middle], len(programme))
     placed = {middle: ground}
     # The first strips lie along the hallway's long sides: that is what a hallway is for.
     sides = [Side.NORTH, Side.SOUTH] if len(programme) >= BOTH_SIDES_FROM else [Side.NORTH]
     while len(placed) < len(programme):
-        side = sides.pop(0) if sides else Side(rng.choice(list(Side)))
-        fitting = _fitting(kinds, placed, ground, side)
-        for _ in range(STRIP_TRIES if fitting else 0):
-            strip = _strip(rng, programme, fitting, ground, side)
-            if strip is None:
-                continue
-            grown = _around([ground, *strip.values()])
-            together = placed | strip
-            if _is_sound(kinds, together, strip, grown):
-                placed, ground = together, grown
-                break
-        else:
+        now = [sides.pop(0)] if sides else [Side(side) for side in rng.permutation(list(Side))]
+        strips = (_sound_strip(rng, programme, beside, placed, ground, side) for side in now)
+        strip = next((strip for strip in strips if strip), None)
+        if strip is None:
             return None
+        placed |= strip
+        ground = _around([ground, *strip.values()])
     if not 1.0 / MAX_PLAN_ASPECT <= ground.width_m / ground.depth_m <= MAX_PLAN_ASPECT:
         return None
     turned = rng.random() < P_TURNED
     return [_at_origin(placed[number], ground, turned) for number in range(len(programme))]
 
 
-def _fitting(kinds: Sequence[str], placed: Mapping[int, Rect], ground: Rect, side: Side) -> list[int]:
+def _sound_strip(
+    rng: np.random.Generator,
+    programme: Sequence[ProgrammeRoom],
+    beside: Sequence[tuple[str, ...]],
+    placed: Mapping[int, Rect],
+    ground: Rect,
+    side: Side,
+) -> dict[int, Rect] | None:
+    """A strip of rooms along one side of the ground, each beside one that it belongs to, or None."""
+    kinds = [room.kind for room in programme]
+    fitting = _fitting(kinds, beside, placed, ground, side)
+    for _ in range(STRIP_TRIES if fitting else 0):
+        strip = _strip(rng, programme, fitting, ground, side)
+        if strip is None:
+            continue
+        if _is_sound(kinds, beside, {**placed, **strip}, strip, _around([ground, *strip.values()])):
+            return strip
+    return None
+
+
+def _fitting(
+    kinds: Sequence[str],
+    beside: Sequence[tuple[str, ...]],
+    placed: Mapping[int, Rect],
+    ground: Rect,
+    side: Side,
+) -> list[int]:
     """The rooms left that could, along one side of the ground, be beside a room that they belong to."""
     line_m = edge(ground, side).line_m
     there = {kinds[number] for number, area in placed.items() if edge(area, side).line_m == line_m}
@@ -74,17 +95,22 @@ def _fitting(kinds: Sequence[str], placed: Mapping[int, Rect], ground: Rect, sid
     fitting: list[int] = []
     for _ in left:
         # Rooms of one strip belong to each other as well.
-        fitting = [number for number in left if there & set(kinds_beside(kinds, number))]
+        fitting = [number for number in left if there.intersection(beside[number])]
         there |= {kinds[number] for number in fitting}
     return fitting
 
 
-def _is_sound(kinds: Sequence[str], placed: Mapping[int, Rect], strip: Iterable[int], ground: Rect) -> bool:
+def _is_sound(
+    kinds: Sequence[str],
+    beside: Sequence[tuple[str, ...]],
+    placed: Mapping[int, Rect],
+    strip: Iterable[int],
+    ground: Rect,
+) -> bool:
     """Whether each new room is beside one that it belongs to, and none that wants light is walled in."""
     for number in strip:
-        wanted = kinds_beside(kinds, number)
-        if wanted and not any(
-            kinds[other] in wanted and has_room_for_door(shared_stretch(placed[number], area))
+        if not any(
+            kinds[other] in beside[number] and has_room_for_door(shared_stretch(placed[number], area))
             for other, area in placed.items()
         ):
             return False
