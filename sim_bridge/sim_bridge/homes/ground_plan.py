@@ -20,14 +20,12 @@ from sim_bridge.homes.wall_lines import edge, shared_stretch
 # How many rooms a strip is tried with: as many as are between so long and so short.
 LONGEST_ROOM_M, SHORTEST_ROOM_M = 6.0, 2.4
 # How often a strip is filled with other rooms before the plan counts as failed.
-STRIP_TRIES = 12
+STRIP_TRIES = 10
 MAX_PLAN_ASPECT = 1.75
 # Areas are drawn this far within their bounds: moving walls to the grid changes them by less.
 AREA_MARGIN = 0.04
 # A hallway this wide has doors in its short sides too; others are narrow.
 P_WIDE_HALLWAY = 0.8
-# In a home of so many rooms, the hallway has rooms on both sides before any lie at its ends.
-BOTH_SIDES_FROM = 7
 WIDE_HALLWAY_M = (1.70, 2.0)
 NARROW_HALLWAY_M = (1.50, 1.65)
 P_TURNED = 0.5
@@ -45,11 +43,10 @@ def draw_ground_plan(rng: np.random.Generator, programme: Sequence[ProgrammeRoom
     middle = kinds.index("hallway") if "hallway" in kinds else _middle_room(rng, programme)
     ground = _middle_area(rng, programme[middle], len(programme))
     placed = {middle: ground}
-    # The first strips lie along the hallway's long sides: that is what a hallway is for.
-    sides = [Side.NORTH, Side.SOUTH] if len(programme) >= BOTH_SIDES_FROM else [Side.NORTH]
     while len(placed) < len(programme):
-        now = [sides.pop(0)] if sides else [Side(side) for side in rng.permutation(list(Side))]
-        strips = (_sound_strip(rng, programme, beside, placed, ground, side) for side in now)
+        # The first strip lies along the hallway's long side: that is what a hallway is for.
+        sides = [Side(side) for side in rng.permutation(list(Side))] if len(placed) > 1 else [Side.NORTH]
+        strips = (_sound_strip(rng, programme, beside, placed, ground, side) for side in sides)
         strip = next((strip for strip in strips if strip), None)
         if strip is None:
             return None
