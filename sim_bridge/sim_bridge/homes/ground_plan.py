@@ -29,6 +29,8 @@ P_WIDE_HALLWAY = 0.8
 WIDE_HALLWAY_M = (1.70, 2.0)
 NARROW_HALLWAY_M = (1.50, 1.65)
 P_TURNED = 0.5
+# So little is no difference between two sides, areas or ratios.
+ROUNDING = 1e-6
 # Nobody is to sleep, cook or sit in a room without a window.
 MAY_LIE_INSIDE = ("hallway", "storage room", "laundry room", "bathroom")
 
@@ -42,6 +44,8 @@ def draw_ground_plan(rng: np.random.Generator, programme: Sequence[ProgrammeRoom
     beside = [kinds_beside(kinds, number) for number in range(len(kinds))]
     middle = kinds.index("hallway") if "hallway" in kinds else _middle_room(rng, programme)
     ground = _middle_area(rng, programme[middle], len(programme))
+    if not meets(ground, programme[middle].needs):
+        return None
     placed = {middle: ground}
     while len(placed) < len(programme):
         # The first strip lies along the hallway's long side: that is what a hallway is for.
@@ -122,12 +126,12 @@ def meets(area: Rect, needs: RoomNeeds) -> bool:
     """Whether a room of that area, up to the middles of its walls, is as its kind needs it."""
     inside = area.grown(-WALL_THICKNESS_M / 2.0)
     short_m, long_m = sorted((inside.width_m, inside.depth_m))
-    slack = 1e-6
     return (
-        needs.area_m2[0] <= inside.area_m2 + slack
-        and inside.area_m2 <= needs.area_m2[1] + slack
-        and short_m >= needs.min_side_m - slack
-        and needs.min_aspect <= long_m / short_m <= needs.max_aspect
+        needs.area_m2[0] <= inside.area_m2 + ROUNDING
+        and inside.area_m2 <= needs.area_m2[1] + ROUNDING
+        and needs.min_side_m <= short_m + ROUNDING
+        and needs.min_aspect <= long_m / short_m + ROUNDING
+        and long_m / short_m <= needs.max_aspect + ROUNDING
     )
 
 
@@ -249,9 +253,9 @@ def _rect(x_min_m: float, y_min_m: float, x_max_m: float, y_max_m: float) -> Rec
 
 def _steps_up(length_m: float) -> int:
     """The least number of grid steps that are as long."""
-    return math.ceil(length_m / GRID_M - 1e-6)
+    return math.ceil(length_m / GRID_M - ROUNDING)
 
 
 def _steps_down(length_m: float) -> int:
     """The greatest number of grid steps that are no longer."""
-    return math.floor(length_m / GRID_M + 1e-6)
+    return math.floor(length_m / GRID_M + ROUNDING)
