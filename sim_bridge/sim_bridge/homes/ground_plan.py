@@ -7,6 +7,7 @@ by chance; the needs of each room decide which draws are kept. Wall lines lie on
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -194,8 +195,9 @@ def _fitted(
     inside_m = length_m - len(needs) * WALL_THICKNESS_M
     if inside_m <= 0.0:
         return None
-    low_m = max(sum(need.area_m2[0] for need in needs) / inside_m, *(need.min_side_m for need in needs))
-    high_m = sum(need.area_m2[1] for need in needs) / inside_m
+    shallowest, deepest = zip(*(_depths_m(need) for need in needs), strict=True)
+    low_m = max(sum(need.area_m2[0] for need in needs) / inside_m, *shallowest)
+    high_m = min(sum(need.area_m2[1] for need in needs) / inside_m, *deepest)
     if low_m > high_m:
         return None
     depth_m = snapped(rng.uniform(low_m, high_m))
@@ -216,6 +218,16 @@ def _fitted(
         spare -= extra
         cuts_m.append(snapped(cuts_m[-1] + (low + extra) * GRID_M + WALL_THICKNESS_M))
     return snapped(depth_m + WALL_THICKNESS_M), cuts_m
+
+
+@cache
+def _depths_m(needs: RoomNeeds) -> tuple[float, float]:
+    """The least and the greatest depth that such a room can have, whatever its width."""
+    low_m2, high_m2 = needs.area_m2
+    return (
+        max(needs.min_side_m, math.sqrt(low_m2 / needs.max_aspect)),
+        min(high_m2 / needs.min_side_m, math.sqrt(high_m2 * needs.max_aspect)),
+    )
 
 
 def _in_strip(ground: Rect, side: Side, low_m: float, high_m: float, depth_m: float) -> Rect:
