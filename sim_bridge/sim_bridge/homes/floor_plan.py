@@ -5,7 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.rect import Rect
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 RESOLUTION_M = 0.05
@@ -15,19 +16,22 @@ MARGIN_M = 0.60
 
 def floor_plan(home: Home, stamp_ns: int = 0) -> OccupancyMap:
     """The home at 0.05 m: walls and furniture occupied, floor and doorways free, outside unknown."""
-    return _drawn(
-        home, UNKNOWN, [(home.bounds, FREE), *((rect, OCCUPIED) for rect in home.obstacles())], stamp_ns
-    )
+    floor = [room.inside for room in home.rooms] + [door.opening for door in home.doors]
+    areas = [(rect, FREE) for rect in floor] + [(rect, OCCUPIED) for rect in home.obstacles()]
+    return _drawn(home, UNKNOWN, areas, stamp_ns)
 
 
 def candidate_mask(home: Home, stamp_ns: int = 0) -> OccupancyMap:
-    """The cells that can hold an object: 100 on low furniture that carries objects, 0 elsewhere.
+    """The cells that can hold an object: 100 on low furniture that carries objects, and where objects hang on
+    the wall behind it; 0 elsewhere.
 
     It has the floor plan's cells, because it also tells which furniture is too low to hide what is behind
     it: a coarser mask either leaves a rim of it that seems to hide, or lies over walls.
     """
-    carriers = [(piece.footprint, OCCUPIED) for piece in home.furniture if piece.carries]
-    return _drawn(home, FREE, carriers, stamp_ns)
+    carriers = [piece for piece in home.furniture if piece.carries]
+    areas = [piece.footprint for piece in carriers]
+    areas += [piece.in_map(place.area) for piece in carriers for place in piece.surfaces if place.hangs]
+    return _drawn(home, FREE, [(area, OCCUPIED) for area in areas], stamp_ns)
 
 
 def _drawn(home: Home, ground: int, areas: Iterable[tuple[Rect, int]], stamp_ns: int) -> OccupancyMap:

@@ -5,6 +5,14 @@ from enum import StrEnum
 
 from robustnav_msgs_py.errors import BadSceneError
 
+# Wall lines lie on this grid, the resolution of the floor plan, so that the map shows walls where they are.
+GRID_M = 0.05
+
+
+def snapped(length_m: float) -> float:
+    """The nearest multiple of the grid, rounded so that equal lines compare equal."""
+    return round(round(length_m / GRID_M) * GRID_M, 6)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rect:
