@@ -4,8 +4,9 @@ Living rooms, kitchens, dining rooms and hallways are passed through; every othe
 these, but for a second bathroom, which may belong to a bedroom.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -66,9 +67,10 @@ def choose_doors(
 ) -> list[DoorPlace] | None:
     """The walls that get a door, at most one per pair of rooms; None where no choice is sensible."""
     kinds = [room.kind for room in programme]
-    walls = _walls_for_doors(areas)
+    placed = dict(enumerate(areas))
+    walls = _walls_for_doors(placed)
     chosen: set[tuple[int, int]] = set()
-    if not _join_passages(kinds, walls, chosen):
+    if not _join_passages(kinds, placed, walls, chosen):
         return None
     for number, kind in enumerate(kinds):
         if kind in PASSED_THROUGH or len(kinds) == 1:
@@ -105,27 +107,35 @@ def kinds_beside(kinds: Sequence[str], number: int) -> tuple[str, ...]:
     return found if found or len(kinds) == 1 else ("kitchen",)
 
 
+def are_joined(kinds: Sequence[str], areas: Mapping[int, Rect]) -> bool:
+    """Whether doors can join those of the placed rooms, by number, that are passed through."""
+    passed = {number: area for number, area in areas.items() if kinds[number] in PASSED_THROUGH}
+    return _join_passages(kinds, passed, _walls_for_doors(passed), set())
+
+
 def has_room_for_door(stretch: Stretch | None) -> bool:
     """Whether there is such a wall, and the widest door fits into it."""
     return stretch is not None and stretch.length_m >= DOOR_NEEDS_M - SAME_LINE_M
 
 
-def _walls_for_doors(areas: Sequence[Rect]) -> dict[tuple[int, int], Stretch]:
-    """The stretches between two rooms that are long enough for a door."""
+def _walls_for_doors(areas: Mapping[int, Rect]) -> dict[tuple[int, int], Stretch]:
+    """The stretches between two rooms that are long enough for a door, by the rooms' numbers, lower first."""
     walls = {}
-    for first, area in enumerate(areas):
-        for second in range(first + 1, len(areas)):
-            stretch = shared_stretch(area, areas[second])
-            if stretch and has_room_for_door(stretch):
-                walls[first, second] = stretch
+    for first, second in combinations(sorted(areas), 2):
+        stretch = shared_stretch(areas[first], areas[second])
+        if stretch and has_room_for_door(stretch):
+            walls[first, second] = stretch
     return walls
 
 
 def _join_passages(
-    kinds: Sequence[str], walls: dict[tuple[int, int], Stretch], chosen: set[tuple[int, int]]
+    kinds: Sequence[str],
+    rooms: Iterable[int],
+    walls: Mapping[tuple[int, int], Stretch],
+    chosen: set[tuple[int, int]],
 ) -> bool:
-    """Join the rooms that are passed through by the most natural doors; False where some stay apart."""
-    group = {number: number for number, kind in enumerate(kinds) if kind in PASSED_THROUGH}
+    """Choose the most natural doors between rooms that are passed through; False where some stay apart."""
+    group = {number: number for number in rooms if kinds[number] in PASSED_THROUGH}
     for passage in _PASSAGES:
         for first, second in walls:
             if _is_one_of(kinds, (first, second), (passage,)) and group[first] != group[second]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sim_bridge.homes.door_choice import has_room_for_door, kinds_beside
+from sim_bridge.homes.door_choice import are_joined, has_room_for_door, kinds_beside
 from sim_bridge.homes.home import WALL_THICKNESS_M
 from sim_bridge.homes.rect import GRID_M, Rect, Side, snapped
 from sim_bridge.homes.room_programmes import HALLWAY_FROM, MAX_ROOMS, ProgrammeRoom, RoomNeeds
@@ -116,6 +116,8 @@ def _is_sound(
             for other, area in placed.items()
         ):
             return False
+    if not are_joined(kinds, placed):
+        return False
     return all(
         kinds[number] in MAY_LIE_INSIDE
         or any(edge(area, side).line_m == edge(ground, side).line_m for side in Side)
