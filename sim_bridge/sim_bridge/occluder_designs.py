@@ -3,30 +3,59 @@
 Frames and footprints are like furniture's: x out of the front, multiples of the floor plan's resolution.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from sim_bridge.homes.carpentry import pick
-from sim_bridge.homes.shapes import Colour, Part, Size, box, cylinder
+from sim_bridge.homes.materials import Material, material
+from sim_bridge.homes.shapes import Part, Vector3, box, cylinder
 
-COLOURS: dict[str, tuple[Colour, ...]] = {
-    "cardboard": ((0.72, 0.56, 0.38), (0.66, 0.50, 0.33), (0.76, 0.62, 0.45)),
-    "tape": ((0.82, 0.76, 0.62), (0.45, 0.33, 0.20)),
-    "shell": ((0.12, 0.13, 0.15), (0.16, 0.26, 0.42), (0.55, 0.12, 0.16), (0.62, 0.64, 0.66)),
-    "rubber": ((0.08, 0.08, 0.08),),
-    "metal": ((0.70, 0.72, 0.75), (0.20, 0.20, 0.22)),
-    "cloth": (
-        (0.24, 0.30, 0.42),
-        (0.68, 0.62, 0.54),
-        (0.38, 0.16, 0.20),
-        (0.86, 0.85, 0.82),
-        (0.30, 0.38, 0.30),
-        (0.16, 0.16, 0.18),
+T = TypeVar("T")
+
+
+def _materials(*words: str) -> tuple[Material, ...]:
+    return tuple(material(line) for line in words)
+
+
+MATERIALS: dict[str, tuple[Material, ...]] = {
+    "cardboard": (
+        material("#b88f61 paper"),
+        material("#a88054 paper"),
+        material("#c29e73 paper"),
     ),
-    "wood": ((0.42, 0.26, 0.15), (0.66, 0.50, 0.32)),
-    "paper": ((0.90, 0.87, 0.78), (0.84, 0.80, 0.72)),
+    "tape": (
+        material("#d1c29e paper"),
+        material("#735433 paper"),
+    ),
+    "shell": (
+        material("#1f2126 plastic"),
+        material("#29426b plastic"),
+        material("#8c1f29 plastic"),
+        material("#9ea3a8 plastic"),
+    ),
+    "rubber": _materials("#141414 plastic"),
+    "metal": (
+        material("#b2b8bf metal"),
+        material("#333338 metal"),
+    ),
+    "cloth": (
+        material("#3d4c6b fabric"),
+        material("#ad9e8a fabric"),
+        material("#612933 fabric"),
+        material("#dbd9d1 fabric"),
+        material("#4c614c fabric"),
+        material("#29292e fabric"),
+    ),
+    "wood": (
+        material("#6b4226 wood"),
+        material("#a88052 wood"),
+    ),
+    "paper": (
+        material("#e6dec7 paper"),
+        material("#d6ccb8 paper"),
+    ),
 }
 
 
@@ -35,8 +64,13 @@ class OccluderDesign:
     """An occluder that stands nowhere yet; `size_m` is its depth, width and height."""
 
     kind: str
-    size_m: Size
+    size_m: Vector3
     parts: tuple[Part, ...]
+
+
+def pick(rng: np.random.Generator, options: Sequence[T]) -> T:
+    """One of the options."""
+    return options[int(rng.integers(len(options)))]
 
 
 def _cardboard_boxes(rng: np.random.Generator) -> OccluderDesign:
@@ -51,7 +85,7 @@ def _cardboard_boxes(rng: np.random.Generator) -> OccluderDesign:
         size_x, size_y = depth_m - 2.0 * slip_m * level, width_m - 2.0 * slip_m * level
         shift = slip_m * level
         x_m, y_m = rng.uniform(-shift, shift), rng.uniform(-shift, shift)
-        card, tape = pick(rng, COLOURS["cardboard"]), pick(rng, COLOURS["tape"])
+        card, tape = pick(rng, MATERIALS["cardboard"]), pick(rng, MATERIALS["tape"])
         parts.append(box((x_m, y_m, z_m + high_m / 2.0), (size_x, size_y, high_m - skin_m), card))
         parts.append(box((x_m, y_m, z_m + high_m / 2.0), (tape_m, size_y - skin_m, high_m), tape))
         z_m += high_m
@@ -62,8 +96,8 @@ def _suitcase(rng: np.random.Generator) -> OccluderDesign:
     """Upright on four wheels, handle pulled out."""
     depth_m, width_m, shell_m = 0.30, 0.50, pick(rng, (0.55, 0.65, 0.75))
     wheel_m, rib_m, handle_m, bar_m = 0.06, 0.02, 0.35, 0.02
-    shell, metal, rubber = (pick(rng, COLOURS[name]) for name in ("shell", "metal", "rubber"))
-    darker: Colour = (shell[0] * 0.7, shell[1] * 0.7, shell[2] * 0.7)
+    shell, metal, rubber = (pick(rng, MATERIALS[name]) for name in ("shell", "metal", "rubber"))
+    darker = shell.shaded(0.7)
     inner_m = depth_m - 2.0 * rib_m
     parts = [box((0.0, 0.0, wheel_m + shell_m / 2.0), (inner_m, width_m - 2.0 * rib_m, shell_m), shell)]
     parts += [
@@ -89,7 +123,7 @@ def _clothes_rack(rng: np.random.Generator) -> OccluderDesign:
     """A rail on two feet, full of clothes of several lengths."""
     depth_m, width_m, height_m = 0.50, pick(rng, (0.90, 1.10)), 1.60
     tube_m, foot_m, gap_m = 0.03, 0.04, 0.02
-    metal = pick(rng, COLOURS["metal"])
+    metal = pick(rng, MATERIALS["metal"])
     post_y = (width_m - tube_m) / 2.0
     rail_z = height_m - tube_m / 2.0
     parts = [box((0.0, 0.0, rail_z), (tube_m, width_m, tube_m), metal)]
@@ -103,8 +137,8 @@ def _clothes_rack(rng: np.random.Generator) -> OccluderDesign:
     for number in range(pieces):
         y_m = (number + 0.5) * step_m - pieces * step_m / 2.0
         long_m, broad_m = rng.uniform(0.70, 1.20), rng.uniform(0.36, 0.46)
-        size: Size = (broad_m, step_m - gap_m, long_m)
-        parts.append(box((0.0, y_m, rail_z - tube_m - long_m / 2.0), size, pick(rng, COLOURS["cloth"])))
+        size: Vector3 = (broad_m, step_m - gap_m, long_m)
+        parts.append(box((0.0, y_m, rail_z - tube_m - long_m / 2.0), size, pick(rng, MATERIALS["cloth"])))
     return OccluderDesign(kind="clothes rack", size_m=(depth_m, width_m, height_m), parts=tuple(parts))
 
 
@@ -113,7 +147,7 @@ def _folding_screen(rng: np.random.Generator) -> OccluderDesign:
     panels, panel_m, height_m = pick(rng, (3, 4)), 0.40, 1.60
     frame_m, thick_m, step_m = 0.04, 0.03, 0.10
     depth_m, width_m = 2.0 * step_m, panels * panel_m
-    wood, paper = pick(rng, COLOURS["wood"]), pick(rng, COLOURS["paper"])
+    wood, paper = pick(rng, MATERIALS["wood"]), pick(rng, MATERIALS["paper"])
     parts: list[Part] = []
     for number in range(panels):
         x_m = (depth_m - thick_m) / 2.0 * (1 if number % 2 else -1)

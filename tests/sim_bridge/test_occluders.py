@@ -5,7 +5,8 @@ import pytest
 
 from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furnishing import PASSAGE_RADII_M
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene_check import REACH_M
 from sim_bridge.homes.shapes import extent
 from sim_bridge.occluder_designs import DESIGNS

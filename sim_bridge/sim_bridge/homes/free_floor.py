@@ -15,8 +15,8 @@ import scipy.ndimage
 from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.carpentry import GAP_M, Design
 from sim_bridge.homes.home import WALL_THICKNESS_M, Door, Room, Wall, Window
-from sim_bridge.homes.placement import GRID_M, Spot
-from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.placement import Spot
+from sim_bridge.homes.rect import GRID_M, Rect, Side
 from sim_bridge.homes.scene import Style
 from sim_bridge.robot.obstacles import ClearanceGrid
 

@@ -13,7 +13,7 @@ from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furnishing import furnish
 from sim_bridge.homes.furniture.catalogue import build_furniture
 from sim_bridge.homes.home import Furniture, Home
-from sim_bridge.homes.room_programmes import ROOM_COUNTS, Difficulty, draw_programme, room_count_of
+from sim_bridge.homes.room_programmes import MAX_ROOMS, MIN_ROOMS, Difficulty, draw_programme, room_count_of
 from sim_bridge.homes.scene import Scene
 from sim_bridge.homes.scene_check import check_passages
 from sim_bridge.homes.walls import Shell, build_shell
@@ -60,8 +60,8 @@ def generate_scene(
         raise BadSceneError(f"a seed must not be negative, not {seed!r}")
     if objects is not None and not MIN_OBJECTS <= objects <= MAX_OBJECTS:
         raise BadSceneError(f"a home holds {MIN_OBJECTS}..{MAX_OBJECTS} objects, not {objects!r}")
-    if rooms is not None and rooms not in ROOM_COUNTS:
-        raise BadSceneError(f"a home has {min(ROOM_COUNTS)}..{max(ROOM_COUNTS)} rooms, not {rooms!r}")
+    if rooms is not None and not MIN_ROOMS <= rooms <= MAX_ROOMS:
+        raise BadSceneError(f"a home has {MIN_ROOMS}..{MAX_ROOMS} rooms, not {rooms!r}")
     rng = np.random.default_rng(seed)
     room_count = rooms or room_count_of(rng, difficulty)
     low, high = (room_count * number for number in OBJECTS_PER_ROOM)
@@ -90,7 +90,7 @@ def _draw(rng: np.random.Generator, seed: int, room_count: int, object_count: in
         doors=layout.doors,
         windows=layout.windows,
         furniture=pieces,
-        objects=arrange(rng, furniture, object_count, look_alikes),
+        objects=arrange(rng, furniture, object_count, look_alikes, walls=shell.walls, windows=shell.windows),
         start=_start(rng, shell, furniture),
     )
     check_passages(build_home(scene))
@@ -105,9 +105,10 @@ def _start(rng: np.random.Generator, shell: Shell, furniture: tuple[Furniture, .
     if not len(rows):
         raise BadSceneError(f"the robot has nowhere to start {START_CLEARANCE_M} m away from everything")
     at = int(rng.integers(len(rows)))
-    heading = int(rng.integers(START_HEADINGS)) * math.tau / START_HEADINGS
+    heading_deg = int(rng.integers(START_HEADINGS)) * 360 // START_HEADINGS
     return Pose2D(
         x_m=round(float(grid.x_m[columns[at]]), DECIMALS),
         y_m=round(float(grid.y_m[rows[at]]), DECIMALS),
-        yaw_rad=math.remainder(heading, math.tau),
+        # a whole number of degrees, which a scene file can say shortly
+        yaw_rad=math.radians(heading_deg if heading_deg <= 180 else heading_deg - 360),
     )

@@ -6,6 +6,7 @@ its footprint is one. Everything is frozen: a home does not change once it is ma
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +21,8 @@ WALL_HEIGHT_M = 2.50
 DOOR_HEIGHT_M = 2.05
 # What is higher up than this does not touch a robot that carries its camera at 1.1 m.
 ROBOT_HEIGHT_M = 1.30
+# Narrower than this is a matter of rounding.
+SLIVER_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -239,6 +242,19 @@ class Home:
         return next((room for room in self.rooms if room.inside.holds(x_m, y_m)), None)
 
     def obstacles(self) -> tuple[Rect, ...]:
-        """The floor that walls and furniture cover as far up as the robot reaches."""
+        """What walls and furniture cover as far up as the robot reaches, and what lies outside."""
         walls = tuple(wall.base for wall in self.walls if wall.z_min_m < ROBOT_HEIGHT_M)
-        return walls + tuple(piece.footprint for piece in self.furniture)
+        return (*walls, *(piece.footprint for piece in self.furniture), *self.outside())
+
+    def outside(self) -> tuple[Rect, ...]:
+        """The parts of `bounds` that no room with its walls covers: none where the home is a rectangle."""
+        covered = [room.inside.grown(WALL_THICKNESS_M) for room in self.rooms]
+        xs = sorted({x for area in covered for x in (area.x_min_m, area.x_max_m)})
+        ys = sorted({y for area in covered for y in (area.y_min_m, area.y_max_m)})
+        cells = (
+            Rect(x_min_m=x, y_min_m=y, x_max_m=X, y_max_m=Y)
+            for x, X in pairwise(xs)
+            for y, Y in pairwise(ys)
+            if X - x > SLIVER_M and Y - y > SLIVER_M
+        )
+        return tuple(cell for cell in cells if not any(area.contains(cell) for area in covered))

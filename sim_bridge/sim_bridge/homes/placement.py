@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_bridge.homes.carpentry import GAP_M, Design
-from sim_bridge.homes.rect import Rect
+from sim_bridge.homes.rect import GRID_M, Rect, snapped
 
-GRID_M = 0.05
 # Between furniture that stands in the middle and the walls.
 AROUND_M = 0.55
 # Between a sofa and the table before it, and what must remain between the table and what is opposite.
@@ -38,11 +37,6 @@ class Spot:
         return Rect(
             x_min_m=min(a[0], b[0]), y_min_m=min(a[1], b[1]), x_max_m=max(a[0], b[0]), y_max_m=max(a[1], b[1])
         )
-
-
-def snapped(length_m: float) -> float:
-    """The nearest multiple of the grid, rounded so that equal lines compare equal."""
-    return round(round(length_m / GRID_M) * GRID_M, 6)
 
 
 def at_walls(rng: np.random.Generator, inside: Rect, depth_m: float, width_m: float) -> list[Spot]:

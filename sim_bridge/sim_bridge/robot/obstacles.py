@@ -7,7 +7,7 @@ import numpy as np
 import scipy.ndimage
 
 from robustnav_msgs_py.values import Float64
-from sim_bridge.homes.home import Rect
+from sim_bridge.homes.rect import Rect
 
 # The floor is looked at in squares of this side; each remembers which rectangles can be nearest in it.
 SQUARE_M = 0.10
@@ -117,6 +117,17 @@ class ClearanceGrid:
             window = cells_m[rows, columns]
             np.minimum(window, distance, out=window)
         return ClearanceGrid(self.bounds, self.resolution_m, cells_m)
+
+    def cell_of(self, x_m: float, y_m: float) -> tuple[int, int]:
+        """Row and column of the cell that holds a point of the bounds."""
+        column = int((x_m - self.bounds.x_min_m) / self.resolution_m)
+        row = int((y_m - self.bounds.y_min_m) / self.resolution_m)
+        return min(row, len(self.y_m) - 1), min(column, len(self.x_m) - 1)
+
+    def cells_in(self, rect: Rect) -> tuple[slice, slice]:
+        """The rows and columns whose middles lie in a rectangle."""
+        rows = _between(self.y_m, rect.y_min_m, rect.y_max_m)
+        return rows, _between(self.x_m, rect.x_min_m, rect.x_max_m)
 
     def regions(self, radius_m: float) -> int:
         """Into how many parts the floor falls for a robot of `radius_m`."""

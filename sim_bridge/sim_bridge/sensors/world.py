@@ -9,7 +9,8 @@ import pybullet
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64
-from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Rect, Side, Wall
+from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Wall
+from sim_bridge.homes.rect import Rect, Side
 from sim_bridge.homes.shapes import Colour, Part, Shape, box
 
 FLOOR_THICKNESS_M = 0.05

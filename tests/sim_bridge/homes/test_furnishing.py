@@ -28,8 +28,8 @@ from sim_bridge.homes.home import (
     Window,
 )
 from sim_bridge.homes.materials import material
-from sim_bridge.homes.placement import Spot, at_walls, corners_first, snapped
-from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.placement import Spot, at_walls, corners_first
+from sim_bridge.homes.rect import Rect, Side, snapped
 from sim_bridge.homes.scene import SceneFurniture
 from sim_bridge.homes.wishes import WISHES, wishes_of
 from sim_bridge.robot.obstacles import ClearanceGrid

@@ -9,8 +9,9 @@ from sim_bridge.homes.arrangement import UNIQUE_CLASSES
 from sim_bridge.homes.floor_plan import FREE, OCCUPIED, RESOLUTION_M, candidate_mask, floor_plan
 from sim_bridge.homes.furniture import BUILDERS
 from sim_bridge.homes.generator import generate_home
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
 from sim_bridge.homes.objects import CLASSES, COLOURS, LABELS
+from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.shapes import Part, Shape, extent
 
 PLANNERS_RADIUS_M = 0.18

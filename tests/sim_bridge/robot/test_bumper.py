@@ -3,7 +3,7 @@
 import pytest
 
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.homes.home import Rect
+from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.bumper import RELEASE_S, Bumper
 from sim_bridge.robot.drive import Drive, DriveLimits
 from sim_bridge.robot.obstacles import Obstacles

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.obstacles import Obstacles
 

@@ -8,7 +8,7 @@ import pytest
 
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.homes.home import Rect
+from sim_bridge.homes.rect import Rect
 from sim_bridge.parameters import SimParameters
 from sim_bridge.robot.drive import STANDSTILL
 from sim_bridge.robot.goal_follower import GoalRefusedError, Phase

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.drive import Drive, DriveLimits
 from sim_bridge.robot.goal_follower import GoalFollower, GoalRefusedError, Phase
 from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles

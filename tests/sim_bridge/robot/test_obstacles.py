@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sim_bridge.homes.home import Home, Rect
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 
