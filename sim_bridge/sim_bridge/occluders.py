@@ -8,13 +8,13 @@ from itertools import chain
 import numpy as np
 
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.furnishing import PASSAGE_RADII_M
+from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
 from sim_bridge.homes.home import Door, Furniture, Home, Room
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene_check import REACH_M
 from sim_bridge.homes.shapes import Part
 from sim_bridge.occluder_designs import DESIGNS, pick
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 # How many of them stand between the middle of a room and what carries objects; the others stand anywhere.
 P_HIDES = 0.8

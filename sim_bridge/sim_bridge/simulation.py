@@ -9,10 +9,10 @@ from robustnav_msgs_py.values import CameraModel, LaserScan, Odometry, Pose2D, V
 from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.generator import generate_home
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.parameters import SimParameters
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.goal_follower import GoalFollower
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.robot.route import RoutePlanner
 from sim_bridge.sensors.camera import Camera, CameraFrame, camera_model
 from sim_bridge.sensors.scan import Laser

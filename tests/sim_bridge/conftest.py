@@ -10,8 +10,8 @@ import pytest
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.generator import generate_home
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid
 from sim_bridge.parameters import SimParameters
-from sim_bridge.robot.obstacles import ClearanceGrid
 
 if TYPE_CHECKING:
     from sim_bridge.simulation import Simulation

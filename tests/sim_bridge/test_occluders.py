@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.furnishing import PASSAGE_RADII_M
+from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene_check import REACH_M
 from sim_bridge.homes.shapes import extent
 from sim_bridge.occluder_designs import DESIGNS
 from sim_bridge.occluders import START_FREE_M, Occluder, place_occluders
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 COUNT = 5
 

@@ -4,9 +4,9 @@ from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.furniture.catalogue import build_furniture
 from sim_bridge.homes.home import Furniture, Home
 from sim_bridge.homes.objects.catalogue import LABELS, build_object
+from sim_bridge.homes.rooms.walls import build_shell
 from sim_bridge.homes.scene import Scene, SceneObject
 from sim_bridge.homes.scene_check import check_home
-from sim_bridge.homes.walls import build_shell
 
 
 def build_home(scene: Scene) -> Home:

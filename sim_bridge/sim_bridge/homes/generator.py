@@ -6,18 +6,24 @@ import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.homes.arrangement import arrange
 from sim_bridge.homes.build import build_home
-from sim_bridge.homes.floor_layout import lay_out
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.furnishing import furnish
 from sim_bridge.homes.furniture.catalogue import build_furniture
+from sim_bridge.homes.furniture.furnishing import furnish
 from sim_bridge.homes.home import Furniture, Home
-from sim_bridge.homes.room_programmes import MAX_ROOMS, MIN_ROOMS, Difficulty, draw_programme, room_count_of
+from sim_bridge.homes.objects.arrangement import arrange
+from sim_bridge.homes.obstacles import ClearanceGrid
+from sim_bridge.homes.rooms.floor_layout import lay_out
+from sim_bridge.homes.rooms.room_programmes import (
+    MAX_ROOMS,
+    MIN_ROOMS,
+    Difficulty,
+    draw_programme,
+    room_count_of,
+)
+from sim_bridge.homes.rooms.walls import Shell, build_shell
 from sim_bridge.homes.scene import Scene
 from sim_bridge.homes.scene_check import check_passages
-from sim_bridge.homes.walls import Shell, build_shell
-from sim_bridge.robot.obstacles import ClearanceGrid
 
 DRAWS = 60
 OBJECTS_PER_ROOM = (5, 7)

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import scipy.ndimage
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.carpentry import GAP_M
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.furnishing import PASSAGE_RADII_M
+from sim_bridge.homes.furniture.carpentry import GAP_M
+from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
 from sim_bridge.homes.home import Furniture, Home, Room, SmallObject
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 # The smallest robot that a home must let through, with the distance that it keeps.
 ROBOT_RADIUS_M = min(PASSAGE_RADII_M)

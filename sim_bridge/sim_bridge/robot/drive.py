@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
-from sim_bridge.robot.obstacles import Obstacles
+from sim_bridge.homes.obstacles import Obstacles
 
 STANDSTILL = Velocity(linear_m_s=0.0, angular_rad_s=0.0)
 STANDING_M_S = 1e-3

@@ -11,7 +11,7 @@ import scipy.spatial
 
 from robustnav_msgs_py.errors import RobustnavError
 from robustnav_msgs_py.values import Bool, Float64
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 
 Point = tuple[float, float]
 

@@ -7,8 +7,8 @@ from sim_bridge.homes.floor_plan import FREE, OCCUPIED, UNKNOWN, candidate_mask,
 from sim_bridge.homes.home import Furniture, Home, Surface
 from sim_bridge.homes.materials import material
 from sim_bridge.homes.rect import Rect
+from sim_bridge.homes.rooms.walls import build_shell
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, Style
-from sim_bridge.homes.walls import build_shell
 
 WOOD = material("oak wood")
 # Its back is to the west wall, whose face is at x = 0.05.

@@ -5,12 +5,12 @@ import pytest
 from scipy import ndimage
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.arrangement import UNIQUE_CLASSES
 from sim_bridge.homes.floor_plan import FREE, OCCUPIED, RESOLUTION_M, candidate_mask, floor_plan
 from sim_bridge.homes.furniture import BUILDERS
 from sim_bridge.homes.generator import generate_home
 from sim_bridge.homes.home import Home
 from sim_bridge.homes.objects import CLASSES, COLOURS, LABELS
+from sim_bridge.homes.objects.arrangement import UNIQUE_CLASSES
 from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.shapes import Part, Shape, extent
 

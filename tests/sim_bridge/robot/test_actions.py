@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.actions import (
     LATTICE_STEP_M,
@@ -23,7 +24,6 @@ from sim_bridge.robot.actions import (
     parse_action,
 )
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
-from sim_bridge.robot.obstacles import Obstacles
 from sim_bridge.robot.planar import ORIGIN, composed
 
 DT_S = 0.02

@@ -3,10 +3,10 @@
 import pytest
 
 from robustnav_msgs_py.values import Pose2D, Velocity
+from sim_bridge.homes.obstacles import Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.bumper import RELEASE_S, Bumper
 from sim_bridge.robot.drive import Drive, DriveLimits
-from sim_bridge.robot.obstacles import Obstacles
 
 DT_S = 0.02
 LIMITS = DriveLimits(

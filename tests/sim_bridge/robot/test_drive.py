@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
-from sim_bridge.robot.obstacles import Obstacles
 
 RADIUS_M, STOP_M, DT_S = 0.15, 0.01, 0.02
 LIMITS = DriveLimits(

@@ -8,11 +8,11 @@ import pytest
 
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
+from sim_bridge.homes.obstacles import Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.parameters import SimParameters
 from sim_bridge.robot.drive import STANDSTILL
 from sim_bridge.robot.goal_follower import GoalRefusedError, Phase
-from sim_bridge.robot.obstacles import Obstacles
 from sim_bridge.simulation import Simulation
 
 FreePoses = Callable[..., list[Pose2D]]

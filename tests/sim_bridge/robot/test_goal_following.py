@@ -7,10 +7,10 @@ import pytest
 
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.drive import Drive, DriveLimits
 from sim_bridge.robot.goal_follower import GoalFollower, GoalRefusedError, Phase
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.robot.route import RoutePlanner
 
 DT_S = 0.02

@@ -8,9 +8,9 @@ import pytest
 
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Pose2D, Velocity
+from sim_bridge.homes.obstacles import Obstacles
 from sim_bridge.homes.rect import Rect
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
-from sim_bridge.robot.obstacles import Obstacles
 from sim_bridge.robot.odometry import SYSTEMATIC, OdometryDrift, WheelOdometry
 from sim_bridge.robot.planar import ORIGIN, composed, inverse
 

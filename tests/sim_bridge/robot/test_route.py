@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.robot.route import SPARE_M, NoWayError, Point, RoutePlanner
 
 KEEP_M = 0.16

@@ -1,6 +1,6 @@
 """What stands in a bathroom."""
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BOARD_M,
     CERAMIC,
     FRONTS,

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BLACK_METAL,
     COVERS,
     FRONTS,

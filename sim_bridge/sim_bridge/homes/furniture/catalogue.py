@@ -5,9 +5,9 @@ import difflib
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.carpentry import Design, FurnitureKind
 from sim_bridge.homes.furniture.bathroom import BATHROOM
 from sim_bridge.homes.furniture.bedroom import BEDROOM
+from sim_bridge.homes.furniture.carpentry import Design, FurnitureKind
 from sim_bridge.homes.furniture.dining_room import DINING_ROOM
 from sim_bridge.homes.furniture.hallway import HALLWAY
 from sim_bridge.homes.furniture.kitchen import KITCHEN

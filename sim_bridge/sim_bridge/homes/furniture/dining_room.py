@@ -1,6 +1,6 @@
 """Tables that people eat at, and what they sit on there."""
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BOARD_M,
     CUSHIONS,
     DARK_WOODS,

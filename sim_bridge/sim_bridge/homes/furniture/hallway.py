@@ -1,6 +1,6 @@
 """What stands where people come in."""
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BLACK_METAL,
     CUSHIONS,
     DARK_WOODS,

@@ -1,6 +1,6 @@
 """What washes, dries and smooths clothes."""
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BLACK_GLASS,
     STEEL,
     Design,

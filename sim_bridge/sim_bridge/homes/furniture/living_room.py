@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     BLACK_GLASS,
     BLACK_METAL,
     CUSHIONS,

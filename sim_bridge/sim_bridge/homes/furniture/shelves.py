@@ -1,6 +1,6 @@
 """Shelves: a bookcase that hides what is behind it, and a low one that carries."""
 
-from sim_bridge.homes.carpentry import (
+from sim_bridge.homes.furniture.carpentry import (
     STEEL,
     WOODS,
     Design,

@@ -6,13 +6,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sim_bridge.homes.floor_layout import FloorLayout, lay_out
-from sim_bridge.homes.ground_plan import MAY_LIE_INSIDE, meets
 from sim_bridge.homes.rect import Rect, snapped
-from sim_bridge.homes.room_programmes import draw_programme
+from sim_bridge.homes.rooms.floor_layout import FloorLayout, lay_out
+from sim_bridge.homes.rooms.ground_plan import MAY_LIE_INSIDE, meets
+from sim_bridge.homes.rooms.room_programmes import draw_programme
+from sim_bridge.homes.rooms.wall_lines import outer_stretches, shared_stretch
+from sim_bridge.homes.rooms.walls import build_shell
 from sim_bridge.homes.scene import SceneRoom
-from sim_bridge.homes.wall_lines import outer_stretches, shared_stretch
-from sim_bridge.homes.walls import build_shell
 
 COUNTS = range(1, 11)
 SEEDS = range(12)

@@ -7,8 +7,8 @@ from itertools import combinations
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.home import DOOR_HEIGHT_M, WALL_HEIGHT_M, WALL_THICKNESS_M
 from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.rooms.wall_lines import Stretch, edge, outer_stretches, shared_stretch
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, SceneWindow
-from sim_bridge.homes.wall_lines import Stretch, edge, outer_stretches, shared_stretch
 
 MIN_ROOM_SIDE_M, MAX_ROOM_SIDE_M = 1.0, 50.0
 MIN_DOOR_M = 0.6

@@ -12,8 +12,8 @@ import numpy as np
 
 from sim_bridge.homes.home import WALL_THICKNESS_M
 from sim_bridge.homes.rect import Rect
-from sim_bridge.homes.room_programmes import ProgrammeRoom
-from sim_bridge.homes.wall_lines import SAME_LINE_M, Stretch, shared_stretch
+from sim_bridge.homes.rooms.room_programmes import ProgrammeRoom
+from sim_bridge.homes.rooms.wall_lines import SAME_LINE_M, Stretch, shared_stretch
 
 DOOR_WIDTHS_M = (0.90, 0.95, 1.00)
 # Between the opening and the face of the next wall.

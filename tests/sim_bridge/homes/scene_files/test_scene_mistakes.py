@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.scene_file import (
+from sim_bridge.homes.scene_files.scene_file import (
     FORMAT,
     MAX_DOORS,
     MAX_FURNITURE,
@@ -19,9 +19,9 @@ from sim_bridge.homes.scene_file import (
     VERSION,
     parse_scene,
 )
-from sim_bridge.homes.scene_text import MAX_DEPTH
+from sim_bridge.homes.scene_files.scene_text import MAX_DEPTH
 
-SMALL = (Path(__file__).parents[2] / "data" / "scenes" / "small.yaml").read_text(encoding="utf-8")
+SMALL = (Path(__file__).parents[3] / "data" / "scenes" / "small.yaml").read_text(encoding="utf-8")
 
 
 def rejected(text: str) -> str:

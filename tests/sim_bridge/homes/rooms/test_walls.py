@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.floor_layout import lay_out
 from sim_bridge.homes.home import Wall
 from sim_bridge.homes.materials import material
 from sim_bridge.homes.rect import Rect, Side
-from sim_bridge.homes.room_programmes import draw_programme
+from sim_bridge.homes.rooms.floor_layout import lay_out
+from sim_bridge.homes.rooms.room_programmes import draw_programme
+from sim_bridge.homes.rooms.walls import Shell, build_shell
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, SceneWindow
-from sim_bridge.homes.walls import Shell, build_shell
 
 
 def _room(name: str, x: float, y: float, x_max: float, y_max: float) -> SceneRoom:

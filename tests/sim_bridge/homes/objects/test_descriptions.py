@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sim_bridge.homes.descriptions import attributes, describe
 from sim_bridge.homes.home import SmallObject
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.homes.objects.catalogue import object_class
+from sim_bridge.homes.objects.descriptions import attributes, describe
 from sim_bridge.homes.scene import Look, Size
 
 

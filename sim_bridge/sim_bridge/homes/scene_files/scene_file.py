@@ -13,8 +13,8 @@ from robustnav_msgs_py.errors import BadFileError, BadSceneError
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.materials import Pattern
 from sim_bridge.homes.scene import Scene, SceneDoor, SceneFurniture, SceneObject, SceneRoom, SceneWindow, Size
-from sim_bridge.homes.scene_fields import Row, degrees_text, is_plain_text
-from sim_bridge.homes.scene_rows import (
+from sim_bridge.homes.scene_files.scene_fields import Row, degrees_text, is_plain_text
+from sim_bridge.homes.scene_files.scene_rows import (
     DEFAULT_SILL_M,
     DEFAULT_TOP_M,
     FACINGS,
@@ -27,7 +27,7 @@ from sim_bridge.homes.scene_rows import (
     room_of,
     window_of,
 )
-from sim_bridge.homes.scene_text import MAX_BYTES, Words, parse_table
+from sim_bridge.homes.scene_files.scene_text import MAX_BYTES, Words, parse_table
 
 FORMAT = "robustnav scene"
 VERSION = 1

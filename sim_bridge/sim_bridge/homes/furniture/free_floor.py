@@ -13,12 +13,12 @@ import numpy as np
 import scipy.ndimage
 
 from robustnav_msgs_py.values import Float64
-from sim_bridge.homes.carpentry import GAP_M, Design
+from sim_bridge.homes.furniture.carpentry import GAP_M, Design
+from sim_bridge.homes.furniture.placement import Spot
 from sim_bridge.homes.home import WALL_THICKNESS_M, Door, Room, Wall, Window
-from sim_bridge.homes.placement import Spot
+from sim_bridge.homes.obstacles import ClearanceGrid
 from sim_bridge.homes.rect import GRID_M, Rect, Side
 from sim_bridge.homes.scene import Style
-from sim_bridge.robot.obstacles import ClearanceGrid
 
 DOOR_ZONE_M = 0.80
 DOOR_ZONE_SIDE_M = 0.10

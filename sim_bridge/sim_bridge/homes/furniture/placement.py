@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_bridge.homes.carpentry import GAP_M, Design
+from sim_bridge.homes.furniture.carpentry import GAP_M, Design
 from sim_bridge.homes.rect import GRID_M, Rect, snapped
 
 # Between furniture that stands in the middle and the walls.

@@ -8,8 +8,8 @@ import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.home import Furniture, Surface, Wall, Window
-from sim_bridge.homes.look_alikes import MIN_ALIKE, draw_count, draw_looks
 from sim_bridge.homes.objects.catalogue import CLASSES, object_class
+from sim_bridge.homes.objects.look_alikes import MIN_ALIKE, draw_count, draw_looks
 from sim_bridge.homes.objects.object_class import ObjectClass
 from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene import Look, SceneObject

@@ -17,11 +17,11 @@ from sim_bridge.homes.home import (
     Wall,
     Window,
 )
-from sim_bridge.homes.outer_shell import outer_shell
 from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.rooms.outer_shell import outer_shell
+from sim_bridge.homes.rooms.shell_check import check_doors, check_reach, check_rooms, check_windows
+from sim_bridge.homes.rooms.wall_lines import SAME_LINE_M, shared_stretch
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, SceneWindow
-from sim_bridge.homes.shell_check import check_doors, check_reach, check_rooms, check_windows
-from sim_bridge.homes.wall_lines import SAME_LINE_M, shared_stretch
 
 HALF_WALL_M = WALL_THICKNESS_M / 2.0
 PANE_M = 0.02

@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.carpentry import GAP_M
-from sim_bridge.homes.free_floor import FreeFloor, door_zone, standing
-from sim_bridge.homes.furnishing import PASSAGE_RADII_M, furnish
+from sim_bridge.homes.furniture.carpentry import GAP_M
 from sim_bridge.homes.furniture.catalogue import (
     KINDS,
     build_furniture,
     default_style,
     design,
 )
+from sim_bridge.homes.furniture.free_floor import FreeFloor, door_zone, standing
+from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M, furnish
+from sim_bridge.homes.furniture.placement import Spot, at_walls, corners_first
+from sim_bridge.homes.furniture.wishes import WISHES, wishes_of
 from sim_bridge.homes.home import (
     WALL_HEIGHT_M,
     WALL_THICKNESS_M,
@@ -28,11 +30,9 @@ from sim_bridge.homes.home import (
     Window,
 )
 from sim_bridge.homes.materials import material
-from sim_bridge.homes.placement import Spot, at_walls, corners_first
+from sim_bridge.homes.obstacles import ClearanceGrid
 from sim_bridge.homes.rect import Rect, Side, snapped
 from sim_bridge.homes.scene import SceneFurniture
-from sim_bridge.homes.wishes import WISHES, wishes_of
-from sim_bridge.robot.obstacles import ClearanceGrid
 
 HALF_M = WALL_THICKNESS_M / 2.0
 PAINT = material("white paint")

@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.carpentry import Design
-from sim_bridge.homes.free_floor import PASSAGE_RADII_M, FreeFloor, Shell, Standing, standing
+from sim_bridge.homes.furniture.carpentry import Design
 from sim_bridge.homes.furniture.catalogue import KINDS, design, draw_style
-from sim_bridge.homes.home import Room
-from sim_bridge.homes.placement import (
+from sim_bridge.homes.furniture.free_floor import PASSAGE_RADII_M, FreeFloor, Shell, Standing, standing
+from sim_bridge.homes.furniture.placement import (
     OPPOSITE_M,
     TABLE_GAP_M,
     Spot,
@@ -23,8 +22,7 @@ from sim_bridge.homes.placement import (
     in_middle,
     opposite,
 )
-from sim_bridge.homes.scene import SceneFurniture, Style
-from sim_bridge.homes.wishes import (
+from sim_bridge.homes.furniture.wishes import (
     CERTAIN,
     DINING_TABLE,
     MIN_PIECES,
@@ -35,6 +33,8 @@ from sim_bridge.homes.wishes import (
     Wish,
     wishes_of,
 )
+from sim_bridge.homes.home import Room
+from sim_bridge.homes.scene import SceneFurniture, Style
 
 # Whether the robot still gets everywhere is asked of so many places that fit, for one piece.
 WAY_CHECKS = 12

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.door_choice import DOOR_MARGIN_M, DOOR_WIDTHS_M, DoorPlace, choose_doors
-from sim_bridge.homes.finishes import draw_finishes
-from sim_bridge.homes.ground_plan import MAY_LIE_INSIDE, draw_ground_plan
 from sim_bridge.homes.home import WALL_THICKNESS_M
 from sim_bridge.homes.rect import Rect, Side, snapped
-from sim_bridge.homes.room_programmes import ProgrammeRoom
+from sim_bridge.homes.rooms.door_choice import DOOR_MARGIN_M, DOOR_WIDTHS_M, DoorPlace, choose_doors
+from sim_bridge.homes.rooms.finishes import draw_finishes
+from sim_bridge.homes.rooms.ground_plan import MAY_LIE_INSIDE, draw_ground_plan
+from sim_bridge.homes.rooms.room_programmes import ProgrammeRoom
+from sim_bridge.homes.rooms.wall_lines import Stretch, outer_stretches
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, SceneWindow
-from sim_bridge.homes.wall_lines import Stretch, outer_stretches
 
 DRAWS = 20_000
 # A door near the end of its wall leaves the rest of the wall to furniture.

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
-from sim_bridge.robot.obstacles import ClearanceGrid, Obstacles
 
 
 def exact_m(rects: tuple[Rect, ...], bounds: Rect, x_m: float, y_m: float) -> float:

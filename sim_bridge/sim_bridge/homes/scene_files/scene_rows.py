@@ -16,7 +16,7 @@ from sim_bridge.homes.scene import (
     Size,
     Style,
 )
-from sim_bridge.homes.scene_fields import Row
+from sim_bridge.homes.scene_files.scene_fields import Row
 
 # The fields of the file and of the rows in each of its lists, in the order in which they are written.
 FIELDS: dict[str, tuple[str, ...]] = {

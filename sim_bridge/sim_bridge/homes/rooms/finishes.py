@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim_bridge.homes.materials import Material, Substance
-from sim_bridge.homes.room_programmes import ProgrammeRoom
+from sim_bridge.homes.rooms.room_programmes import ProgrammeRoom
 
 BOARDS = ("oak", "walnut", "#c49a6c", "#a9794b", "#8c6a4a", "#d2b48c")
 TILES = ("#d9d4c7", "#c9cdd0", "#b7bdb9", "#e4dccb", "#a8b4bb", "#cbb8a0")

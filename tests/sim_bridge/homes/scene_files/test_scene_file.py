@@ -24,8 +24,8 @@ from sim_bridge.homes.scene import (
     Size,
     Style,
 )
-from sim_bridge.homes.scene_fields import degrees_text, heading_rad
-from sim_bridge.homes.scene_file import (
+from sim_bridge.homes.scene_files.scene_fields import degrees_text, heading_rad
+from sim_bridge.homes.scene_files.scene_file import (
     MAX_DOORS,
     MAX_FURNITURE,
     MAX_OBJECTS,
@@ -36,7 +36,7 @@ from sim_bridge.homes.scene_file import (
     scene_text,
     write_scene,
 )
-from sim_bridge.homes.scene_rows import (
+from sim_bridge.homes.scene_files.scene_rows import (
     DEFAULT_DOOR_WIDTH_M,
     DEFAULT_FLOOR,
     DEFAULT_SILL_M,
@@ -44,9 +44,9 @@ from sim_bridge.homes.scene_rows import (
     DEFAULT_WALLS,
     FIELDS,
 )
-from sim_bridge.homes.scene_text import MAX_BYTES
+from sim_bridge.homes.scene_files.scene_text import MAX_BYTES
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 SCENES = ROOT / "tests" / "data" / "scenes"
 TWO_ROOMS = SCENES / "two_rooms.yaml"
 SMALL = (SCENES / "small.yaml").read_text(encoding="utf-8")

@@ -13,7 +13,7 @@ import yaml
 
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.materials import COLOURS, Material, Substance, material
-from sim_bridge.homes.scene_text import Items, Node, Table, Words, problem, shown
+from sim_bridge.homes.scene_files.scene_text import Items, Node, Table, Words, problem, shown
 
 MAX_LENGTH_M = 1000.0
 MAX_HEADING_DEG = 360.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.room_programmes import NEEDS, Difficulty, draw_programme, room_count_of
+from sim_bridge.homes.rooms.room_programmes import NEEDS, Difficulty, draw_programme, room_count_of
 
 
 @pytest.mark.parametrize("room_count", range(1, 11))

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.arrangement import MAX_ALIKE, OBJECT_GAP_M, UNIQUE_CLASSES, arrange
-from sim_bridge.homes.descriptions import describe
 from sim_bridge.homes.home import Furniture, SmallObject, Surface, Wall, Window
 from sim_bridge.homes.materials import material
+from sim_bridge.homes.objects.arrangement import MAX_ALIKE, OBJECT_GAP_M, UNIQUE_CLASSES, arrange
 from sim_bridge.homes.objects.catalogue import LABELS, build_object, object_class
+from sim_bridge.homes.objects.descriptions import describe
 from sim_bridge.homes.rect import Rect, Side
 from sim_bridge.homes.scene import SceneObject, Style
 from sim_bridge.homes.shapes import box, extent

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
-from sim_bridge.homes.carpentry import GAP_M, Design
+from sim_bridge.homes.furniture.carpentry import GAP_M, Design
 from sim_bridge.homes.furniture.catalogue import (
     KINDS,
     build_furniture,

@@ -12,11 +12,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from sim_bridge.homes.door_choice import are_joined, has_room_for_door, kinds_beside
 from sim_bridge.homes.home import WALL_THICKNESS_M
 from sim_bridge.homes.rect import GRID_M, Rect, Side, snapped
-from sim_bridge.homes.room_programmes import HALLWAY_FROM, MAX_ROOMS, ProgrammeRoom, RoomNeeds
-from sim_bridge.homes.wall_lines import edge, shared_stretch
+from sim_bridge.homes.rooms.door_choice import are_joined, has_room_for_door, kinds_beside
+from sim_bridge.homes.rooms.room_programmes import HALLWAY_FROM, MAX_ROOMS, ProgrammeRoom, RoomNeeds
+from sim_bridge.homes.rooms.wall_lines import edge, shared_stretch
 
 # How many rooms a strip is tried with: as many as are between so long and so short.
 LONGEST_ROOM_M, SHORTEST_ROOM_M = 6.0, 2.4
