@@ -12,7 +12,7 @@ from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Float6
 from sim_bridge.homes.shapes import Vector3
 from sim_bridge.sensors.rasterizer import View, depth_and_numbers, rasterise
 from sim_bridge.sensors.scenery import Scenery
-from sim_bridge.sensors.textures import CLOUDS, WHITE, paint
+from sim_bridge.sensors.textures import paint
 
 OPTICAL_FRAME = "camera_optical_frame"
 
@@ -114,7 +114,7 @@ def _rendered(
     depth_m, numbers = depth_and_numbers(scenery.mesh, samples, float(range_m))
     image = None
     if color:
-        pixels = paint(scenery.mesh, view, samples, (WHITE, CLOUDS))
+        pixels = paint(scenery.mesh, view, samples)
         image = ColorImage(pixels=pixels, stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME)
     return CameraFrame(
         color=image,

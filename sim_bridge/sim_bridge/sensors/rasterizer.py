@@ -21,6 +21,8 @@ NEAR_M = 0.05
 NEARER = np.float32(1.00001)
 # A face whose plane is this near to the eye is seen edge-on.
 EDGE_ON_M = 1e-9
+# Taken from the distance of walls and floors, so that they come before all else.
+FIRST_M = 1e6
 # A thing with fewer triangles is drawn faster than it is found to be hidden.
 WORTH_A_LOOK = 24
 
@@ -141,15 +143,16 @@ def _front_to_back(mesh: Mesh, view: View) -> NDArray[np.int64]:
             or y - bottom * z > radius * math.hypot(1.0, bottom)
         ):
             continue
-        found[kept] = item
         distance = math.sqrt(x * x + y * y + z * z)
-        keys[kept] = distance if mesh.item_first[item] == 0 else distance - FIRST_M
+        key = distance if mesh.item_first[item] == 0 else distance - FIRST_M
+        # Insertion keeps them sorted: they are few, and numpy's sort takes a second to compile.
+        place = kept
+        while place > 0 and keys[place - 1] > key:
+            keys[place], found[place] = keys[place - 1], found[place - 1]
+            place -= 1
+        keys[place], found[place] = key, item
         kept += 1
-    return found[:kept][np.argsort(keys[:kept], kind="mergesort")]
-
-
-# Taken from the distance of walls and floors, so that they come before all else.
-FIRST_M = 1e6
+    return found[:kept]
 
 
 @compiled
@@ -160,15 +163,13 @@ def _is_hidden(mesh: Mesh, view: View, item: int, nearness: Float32) -> bool:
     front = z - radius
     if front <= NEAR_M:
         return False
-    # The cube around the ball covers at least as much of the picture as the ball.
-    us = view.cx + view.fx * np.array((x - radius, x + radius)) / front
-    vs = view.cy + view.fy * np.array((y - radius, y + radius)) / front
-    far_us = view.cx + view.fx * np.array((x - radius, x + radius)) / (z + radius)
-    far_vs = view.cy + view.fy * np.array((y - radius, y + radius)) / (z + radius)
-    u_low = int(max(0.0, math.floor(min(us[0], far_us[0]))))
-    u_high = int(min(view.width - 1.0, math.ceil(max(us[1], far_us[1]))))
-    v_low = int(max(0.0, math.floor(min(vs[0], far_vs[0]))))
-    v_high = int(min(view.height - 1.0, math.ceil(max(vs[1], far_vs[1]))))
+    # The cube around the ball covers at least as much of the picture as the ball; its corners tell how much.
+    back = z + radius
+    u_low = max(0, int(math.floor(view.cx + view.fx * min((x - radius) / front, (x - radius) / back))))
+    v_low = max(0, int(math.floor(view.cy + view.fy * min((y - radius) / front, (y - radius) / back))))
+    u_high = int(math.ceil(view.cx + view.fx * max((x + radius) / front, (x + radius) / back)))
+    v_high = int(math.ceil(view.cy + view.fy * max((y + radius) / front, (y + radius) / back)))
+    u_high, v_high = min(view.width - 1, u_high), min(view.height - 1, v_high)
     nearest = np.float32(1.0 / front)
     for v in range(v_low, v_high + 1):
         for u in range(u_low, u_high + 1):

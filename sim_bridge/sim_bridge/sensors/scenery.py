@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadSceneError
-from robustnav_msgs_py.values import Float32, Float64
+from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Room, Wall, Window
 from sim_bridge.homes.materials import COLOURS, Colour, Material, Pattern, Substance
 from sim_bridge.homes.rect import Rect, Side
@@ -33,7 +33,6 @@ _FACE_OF_SIDE = {Side.WEST: WEST, Side.EAST: EAST, Side.SOUTH: SOUTH, Side.NORTH
 
 SUBSTANCE_CODE = {substance: code for code, substance in enumerate(Substance)}
 PATTERN_CODE = {pattern: code for code, pattern in enumerate(Pattern)}
-SHAPE_CODE = {shape: code for code, shape in enumerate(Shape)}
 
 # A pattern shows this many periods over the part's largest extent, and none shorter than that.
 PERIODS = 5.0
@@ -84,7 +83,7 @@ class Mesh(NamedTuple):
     triangle_part: Int32  # [triangles]
     part_item: Int32  # [parts]
     part_look: Int32  # [parts, 5]: substance, pattern, longest axis, axis of a cylinder, variant 0..255
-    part_colour: Float32  # [parts, 6]: red, green, blue, and those of the pattern
+    part_colour: Float64  # [parts, 6]: red, green, blue, and those of the pattern
     part_frame: Float64  # [parts, 4]: its centre, and the period of its pattern
     item_vertices: Int32  # [items + 1]
     item_triangles: Int32  # [items + 1]
@@ -236,54 +235,50 @@ class _Hull(NamedTuple):
 
 
 def _mesh(items: tuple[Item, ...]) -> Mesh:
-    vertices, triangles, planes, faces, owners = [], [], [], [], []
-    part_item, looks, colours, frames = [], [], [], []
-    item_vertices, item_triangles, spheres = [0], [0], []
+    vertices, triangles, firsts, faces = [], [], [], []
+    part_item, part_triangles, looks, colours, frames = [], [], [], [], []
+    item_vertices, item_triangles = [0], [0]
     for row, item in enumerate(items):
         count, triangle_count = 0, 0
         for at, part in enumerate(item.parts):
             hull = _hull(part)
-            seen = ~np.isin(hull.faces, item.unseen)
-            corners = np.asarray(part.centre_m) + hull.vertices * (np.asarray(part.size_m) / 2.0)
-            vertices.append(corners)
-            triangles.append(hull.triangles[seen] + count)
-            planes.append(_planes(corners, hull.triangles[seen]))
+            seen = ~np.isin(hull.faces, item.unseen) if item.unseen else slice(None)
+            own = hull.triangles[seen]
+            vertices.append(hull.vertices * (np.array(part.size_m) / 2.0) + part.centre_m)
+            triangles.append(own + count)
             faces.append(hull.faces[seen])
-            owners.append(np.full(int(seen.sum()), len(part_item)))
             part_item.append(row)
+            part_triangles.append(len(own))
             looks.append(_look(part, at + 7 * row))
             colours.append((*part.material.rgb, *second_colour(part.material)))
-            period_m = max(SHORTEST_PERIOD_M, max(part.size_m) / PERIODS)
-            frames.append((*part.centre_m, period_m))
-            count += len(corners)
-            triangle_count += int(seen.sum())
+            frames.append((*part.centre_m, max(SHORTEST_PERIOD_M, max(part.size_m) / PERIODS)))
+            count += len(hull.vertices)
+            triangle_count += len(own)
+        firsts.append(np.full(triangle_count, item_vertices[-1]))
         item_vertices.append(item_vertices[-1] + count)
         item_triangles.append(item_triangles[-1] + triangle_count)
-        spheres.append(_sphere(item.parts))
+    vertex_m = np.concatenate([np.zeros((0, 3)), *vertices])
+    triangle = np.concatenate([np.zeros((0, 3), dtype=np.int32), *triangles]).astype(np.int32)
+    first = np.concatenate([np.zeros(0, dtype=np.int64), *firsts])
     poses = [(i.x_m, i.y_m, i.z_m, math.cos(i.yaw_rad), math.sin(i.yaw_rad)) for i in items]
     return Mesh(
-        vertex_m=_stacked(vertices, np.float64, 3),
-        triangle=_stacked(triangles, np.int32, 3),
-        triangle_plane=_stacked(planes, np.float64, 4),
-        triangle_face=_stacked(faces, np.int32),
-        triangle_part=_stacked(owners, np.int32),
+        vertex_m=vertex_m,
+        triangle=triangle,
+        triangle_plane=_planes(vertex_m, triangle + first[:, None]),
+        triangle_face=np.concatenate([np.zeros(0, dtype=np.int32), *faces]).astype(np.int32),
+        triangle_part=np.repeat(np.arange(len(part_item), dtype=np.int32), part_triangles),
         part_item=np.array(part_item, dtype=np.int32),
         part_look=np.array(looks, dtype=np.int32).reshape(-1, 5),
-        part_colour=np.array(colours, dtype=np.float32).reshape(-1, 6),
+        part_colour=np.array(colours, dtype=np.float64).reshape(-1, 6),
         part_frame=np.array(frames, dtype=np.float64).reshape(-1, 4),
         item_vertices=np.array(item_vertices, dtype=np.int32),
         item_triangles=np.array(item_triangles, dtype=np.int32),
-        item_sphere_m=np.array(spheres, dtype=np.float64).reshape(-1, 4),
+        item_sphere_m=np.array([_sphere(item.parts) for item in items], dtype=np.float64).reshape(-1, 4),
         item_pose=np.array(poses, dtype=np.float64).reshape(-1, 5),
         item_light_m=np.array([item.light_m for item in items], dtype=np.float64).reshape(-1, 3),
         item_number=np.array([item.number for item in items], dtype=np.int32),
         item_first=np.array([bool(item.unseen) for item in items], dtype=np.int32),
     )
-
-
-def _stacked(pieces: list[NDArray[np.generic]], dtype: type, width: int = 0) -> NDArray[np.generic]:
-    shape = (0, width) if width else (0,)
-    return np.concatenate([np.zeros(shape), *pieces]).astype(dtype)
 
 
 def _sphere(parts: tuple[Part, ...]) -> tuple[float, float, float, float]:
@@ -293,15 +288,17 @@ def _sphere(parts: tuple[Part, ...]) -> tuple[float, float, float, float]:
     return x, y, z, float(np.linalg.norm(high - low)) * 0.51
 
 
-def _planes(vertices: Float64, triangles: Int32) -> Float64:
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+def _planes(vertex_m: Float64, triangles: NDArray[np.int64]) -> Float64:
+    """Outward unit normal and distance from the origin of each triangle, [n, 4]."""
+    a, b, c = (vertex_m[triangles[:, corner]] for corner in range(3))
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return np.concatenate([normals, (normals * a).sum(axis=1, keepdims=True)], axis=1)
 
 
 def _look(part: Part, variant: int) -> tuple[int, int, int, int, int]:
-    longest = int(np.argmax(part.size_m)) if part.shape is not Shape.CYLINDER else int(part.axis)
+    size_m = part.size_m
+    longest = int(part.axis) if part.shape is Shape.CYLINDER else size_m.index(max(size_m))
     return (
         SUBSTANCE_CODE[part.material.substance],
         PATTERN_CODE[part.material.pattern],

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
-from sim_bridge.sensors.compiled import compiled
+from sim_bridge.sensors.compiled import compiled_loosely
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
 from sim_bridge.sensors.scenery import GLOBE, MANTLE, PATTERN_CODE, SUBSTANCE_CODE, Mesh
 
@@ -55,11 +55,13 @@ SHARPNESS = 5  # a highlight is the cosine to the power of 2 ** SHARPNESS
 # At a grazing angle a pixel covers a longer piece of the surface, but never longer than this many times.
 LONGEST_FOOTPRINT = 8.0
 
-_CELLS = 256
+# The tables are part of the compiled code: handed over, each look-up would count references to them.
+_CELLS = 128
+_LAST = _CELLS - 1
 
 
 def _hashed(seed: int) -> Float64:
-    """White noise [256, 256] in -1..1 that is the same on every machine."""
+    """White noise [_CELLS, _CELLS] in -1..1 that is the same on every machine."""
     state = np.arange(_CELLS * _CELLS, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(seed)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
         state = (state ^ (state >> np.uint64(shift))) * np.uint64(factor)
@@ -68,10 +70,10 @@ def _hashed(seed: int) -> Float64:
 
 
 def _clouds() -> Float32:
-    """Smooth noise [256, 256] in -1..1 that goes on across its borders; its finest waves are 4 cells long."""
+    """Smooth noise [_CELLS, _CELLS] in -1..1 that goes on across its borders; its finest waves are 4 cells long."""
     total = np.zeros((_CELLS, _CELLS))
     at = np.arange(_CELLS)
-    for octave, cells in enumerate((8, 16, 32, 64)):
+    for octave, cells in enumerate((4, 8, 16, 32)):
         coarse = _hashed(octave + 1)[:cells, :cells]
         place = at * cells / _CELLS
         low = place.astype(int)
@@ -87,38 +89,38 @@ WHITE: Float32 = _hashed(0).astype(np.float32)
 CLOUDS: Float32 = _clouds()
 
 
-@compiled
-def _white(white: Float32, x: float, y: float) -> float:
+@compiled_loosely
+def _white(x: float, y: float) -> float:
     """The noise of the cell that holds (x, y)."""
-    return float(white[int(math.floor(y)) & 255, int(math.floor(x)) & 255])
+    return float(WHITE[int(math.floor(y)) & _LAST, int(math.floor(x)) & _LAST])
 
 
-@compiled
-def _smooth(clouds: Float32, x: float, y: float) -> float:
+@compiled_loosely
+def _smooth(x: float, y: float) -> float:
     """Noise between four cells."""
     i, j = math.floor(x), math.floor(y)
     p, q = x - i, y - j
-    a, b = int(i) & 255, int(j) & 255
-    c, d = (a + 1) & 255, (b + 1) & 255
-    low = clouds[b, a] + (clouds[b, c] - clouds[b, a]) * p
-    high = clouds[d, a] + (clouds[d, c] - clouds[d, a]) * p
+    a, b = int(i) & _LAST, int(j) & _LAST
+    c, d = (a + 1) & _LAST, (b + 1) & _LAST
+    low = CLOUDS[b, a] + (CLOUDS[b, c] - CLOUDS[b, a]) * p
+    high = CLOUDS[d, a] + (CLOUDS[d, c] - CLOUDS[d, a]) * p
     return float(low + (high - low) * q)
 
 
-@compiled
+@compiled_loosely
 def _share(waves_m: float, footprint_m: float) -> float:
     """How much of a detail is left: all while a pixel covers a quarter of it, none from a half on."""
     return min(1.0, max(0.0, 2.0 - 4.0 * footprint_m / waves_m))
 
 
-@compiled
+@compiled_loosely
 def _line(offset_m: float, width_m: float, footprint_m: float) -> float:
     """How much of a pixel a line covers whose middle is `offset_m` away from the pixel's."""
     reach = (width_m + footprint_m) / 2.0 - abs(offset_m)
     return min(1.0, max(0.0, reach / footprint_m)) * min(1.0, width_m / footprint_m)
 
 
-@compiled
+@compiled_loosely
 def _half(at_m: float, period_m: float, footprint_m: float) -> float:
     """1 in the first half of every period, 0 in the second; soft where a pixel covers both."""
     place = at_m / period_m
@@ -129,15 +131,15 @@ def _half(at_m: float, period_m: float, footprint_m: float) -> float:
     return 0.5 + (sharp - 0.5) * left
 
 
-@compiled
-def _wood(clouds: Float32, s: float, t: float, footprint_m: float) -> float:
+@compiled_loosely
+def _wood(s: float, t: float, footprint_m: float) -> float:
     """Wood as a factor of brightness: rings that wander, with fine streaks along the grain."""
-    wander = _smooth(clouds, s * 40.0, t * 160.0)
+    wander = _smooth(s * 40.0, t * 160.0)
     ring = t / RING_M + 1.6 * wander + 0.4 * s
     ring -= math.floor(ring)
     # Each ring darkens slowly and ends at once, as late wood does.
     ring = ring * ring * min(1.0, 6.0 * (1.0 - ring))
-    streak = _smooth(clouds, s * 4.0 / FIBRE_M, t * 4.0 / STREAK_M)
+    streak = _smooth(s * 4.0 / FIBRE_M, t * 4.0 / STREAK_M)
     return (
         1.0
         + 0.05 * wander
@@ -146,62 +148,60 @@ def _wood(clouds: Float32, s: float, t: float, footprint_m: float) -> float:
     )
 
 
-@compiled
-def _grain(
-    white: Float32, clouds: Float32, substance: int, s: float, t: float, footprint_m: float
-) -> float:
+@compiled_loosely
+def _grain(substance: int, s: float, t: float, footprint_m: float) -> float:
     """What a substance does to the brightness at (s, t) (m; s along the longer side): a factor near 1."""
     if substance == PAINT:
-        return 1.0 + 0.018 * _smooth(clouds, s * 32.0 / CLOUD_M, t * 32.0 / CLOUD_M)
+        return 1.0 + 0.018 * _smooth(s * 32.0 / CLOUD_M, t * 32.0 / CLOUD_M)
     if substance == WOOD:
-        return _wood(clouds, s, t, footprint_m)
+        return _wood(s, t, footprint_m)
     if substance == BOARDS:
         row = math.floor(t / BOARD_WIDTH_M)
-        along = s + BOARD_LENGTH_M * _white(white, row, 11.5)
+        along = s + BOARD_LENGTH_M * _white(row, 11.5)
         board = math.floor(along / BOARD_LENGTH_M)
-        tone = _white(white, row, board)
+        tone = _white(row, board)
         joint = max(
             _line(t - BOARD_WIDTH_M * math.floor(t / BOARD_WIDTH_M + 0.5), BOARD_JOINT_M, footprint_m),
             _line(
                 along - BOARD_LENGTH_M * math.floor(along / BOARD_LENGTH_M + 0.5), BOARD_JOINT_M, footprint_m
             ),
         )
-        wood = _wood(clouds, s + 3.7 * tone, t + 5.1 * tone, footprint_m)
+        wood = _wood(s + 3.7 * tone, t + 5.1 * tone, footprint_m)
         return wood * (1.0 + 0.07 * tone) * (1.0 - 0.45 * joint)
     if substance == FABRIC:
         over = _half(s, WEAVE_M, footprint_m) - _half(t, WEAVE_M, footprint_m)
-        thread = _white(white, s / WEAVE_M * 2.0, t / WEAVE_M * 2.0) * _share(WEAVE_M, footprint_m)
-        slub = _smooth(clouds, s * 300.0, t * 300.0) * _share(0.02, footprint_m)
-        return 1.0 + 0.07 * over + 0.05 * thread + 0.05 * slub + 0.02 * _smooth(clouds, s * 60.0, t * 60.0)
+        thread = _white(s / WEAVE_M * 2.0, t / WEAVE_M * 2.0) * _share(WEAVE_M, footprint_m)
+        slub = _smooth(s * 300.0, t * 300.0) * _share(0.02, footprint_m)
+        return 1.0 + 0.07 * over + 0.05 * thread + 0.05 * slub + 0.02 * _smooth(s * 60.0, t * 60.0)
     if substance == CARPET:
-        tuft = _white(white, s / CARPET_M * 2.0, t / CARPET_M * 2.0) * _share(CARPET_M, footprint_m)
-        return 1.0 + 0.13 * tuft + 0.07 * _smooth(clouds, s * 160.0, t * 160.0)
+        tuft = _white(s / CARPET_M * 2.0, t / CARPET_M * 2.0) * _share(CARPET_M, footprint_m)
+        return 1.0 + 0.13 * tuft + 0.07 * _smooth(s * 160.0, t * 160.0)
     if substance == LEATHER:
-        pore = _smooth(clouds, s * 8.0 / PORE_M, t * 8.0 / PORE_M)
+        pore = _smooth(s * 8.0 / PORE_M, t * 8.0 / PORE_M)
         return 1.0 - 0.20 * max(0.0, pore) * _share(PORE_M, footprint_m) + 0.05 * _smooth(
-            clouds, s * 50.0, t * 50.0
+            s * 50.0, t * 50.0
         )
     if substance == METAL:
-        brushed = _smooth(clouds, s * 12.0, t * 700.0) * _share(0.02, footprint_m)
-        return 1.0 + 0.07 * brushed + 0.03 * _smooth(clouds, s * 8.0, t * 60.0)
+        brushed = _smooth(s * 12.0, t * 700.0) * _share(0.02, footprint_m)
+        return 1.0 + 0.07 * brushed + 0.03 * _smooth(s * 8.0, t * 60.0)
     if substance == PAPER:
         place = t - RULING_M * math.floor(t / RULING_M + 0.5)
         return 1.0 - 0.16 * _line(place, 0.0012, footprint_m)
     if substance == STONE:
-        speckle = _white(white, s / SPECKLE_M * 3.0, t / SPECKLE_M * 3.0) * _share(SPECKLE_M, footprint_m)
-        blot = _smooth(clouds, s * 400.0, t * 400.0) * _share(0.03, footprint_m)
-        return 1.0 + 0.12 * speckle + 0.14 * blot + 0.05 * _smooth(clouds, s * 60.0, t * 60.0)
+        speckle = _white(s / SPECKLE_M * 3.0, t / SPECKLE_M * 3.0) * _share(SPECKLE_M, footprint_m)
+        blot = _smooth(s * 400.0, t * 400.0) * _share(0.03, footprint_m)
+        return 1.0 + 0.12 * speckle + 0.14 * blot + 0.05 * _smooth(s * 60.0, t * 60.0)
     if substance == TILES:
-        tone = _white(white, s / TILE_M, t / TILE_M)
+        tone = _white(s / TILE_M, t / TILE_M)
         grout = max(
             _line(s - TILE_M * math.floor(s / TILE_M + 0.5), GROUT_M, footprint_m),
             _line(t - TILE_M * math.floor(t / TILE_M + 0.5), GROUT_M, footprint_m),
         )
-        return (1.0 + 0.025 * tone + 0.03 * _smooth(clouds, s * 120.0, t * 120.0)) * (1.0 - 0.28 * grout)
+        return (1.0 + 0.025 * tone + 0.03 * _smooth(s * 120.0, t * 120.0)) * (1.0 - 0.28 * grout)
     return 1.0
 
 
-@compiled
+@compiled_loosely
 def pattern_share(pattern: int, s: float, t: float, period_m: float, footprint_m: float) -> float:
     """How much of the pattern's colour is at (s, t): 0..1; stripes run across s."""
     if pattern == STRIPED:
@@ -221,9 +221,8 @@ def pattern_share(pattern: int, s: float, t: float, period_m: float, footprint_m
     return 0.0
 
 
-@compiled
+@compiled_loosely
 def albedo(
-    tables: tuple[Float32, Float32],
     look: tuple[int, int],
     colours: tuple[float, float, float, float, float, float],
     place: tuple[float, float, float, float],
@@ -232,11 +231,11 @@ def albedo(
 ) -> tuple[float, float, float]:
     """Red, green and blue in 0..1 of a surface.
 
-    `tables` are (WHITE, CLOUDS), `look` is the codes of substance and pattern, `colours` are the material's and
+    `look` is the codes of substance and pattern, `colours` are the material's and
     its pattern's. `place` is (s, t) where the pattern is looked up and (s, t) where the substance is.
     """
     share = pattern_share(look[1], place[0], place[1], period_m, footprint_m)
-    tone = _grain(tables[0], tables[1], look[0], place[2], place[3], footprint_m) - 1.0
+    tone = _grain(look[0], place[2], place[3], footprint_m) - 1.0
     # What is darker is a little redder, as in wood and cloth.
     red = (colours[0] + (colours[3] - colours[0]) * share) * (1.0 + 0.85 * tone)
     green = (colours[1] + (colours[4] - colours[1]) * share) * (1.0 + tone)
@@ -244,7 +243,7 @@ def albedo(
     return min(1.0, max(0.0, red)), min(1.0, max(0.0, green)), min(1.0, max(0.0, blue))
 
 
-@compiled
+@compiled_loosely
 def _gloss(substance: int) -> float:
     """How bright a highlight is."""
     if substance == METAL:
@@ -258,7 +257,7 @@ def _gloss(substance: int) -> float:
     return 0.0
 
 
-@compiled
+@compiled_loosely
 def _angle(x: float, y: float) -> float:
     """The angle of (x, y) to within 0.005 rad, which is finer than anything drawn with it."""
     a, b = abs(x), abs(y)
@@ -271,9 +270,9 @@ def _angle(x: float, y: float) -> float:
     return -angle if y < 0.0 else angle
 
 
-@compiled
-def paint(mesh: Mesh, view: View, samples: Samples, tables: tuple[Float32, Float32]) -> NDArray[np.uint8]:
-    """The picture, uint8 [height, width, 3], of what `rasterise` found; `tables` are (WHITE, CLOUDS)."""
+@compiled_loosely
+def paint(mesh: Mesh, view: View, samples: Samples) -> NDArray[np.uint8]:
+    """The picture, uint8 [height, width, 3], of what `rasterise` found."""
     height, width = samples.triangle.shape
     picture = np.empty((height, width, 3), dtype=np.uint8)
     before, item_before, part_before = NOTHING, NOTHING, NOTHING
@@ -313,9 +312,7 @@ def paint(mesh: Mesh, view: View, samples: Samples, tables: tuple[Float32, Float
                     shift = variant * 0.173
                     shininess = _gloss(substance)
                     c = mesh.part_colour[part]
-                    colours = (
-                        float(c[0]), float(c[1]), float(c[2]), float(c[3]), float(c[4]), float(c[5])
-                    )
+                    colours = (c[0], c[1], c[2], c[3], c[4], c[5])
                     frame = mesh.part_frame[part]
                     centre = (frame[0], frame[1], frame[2])
                     period_m = frame[3]
@@ -374,7 +371,6 @@ def paint(mesh: Mesh, view: View, samples: Samples, tables: tuple[Float32, Float
             facing = max(0.0, (nx * ex + ny * ey + nz * ez) * away)
             stretch = min(LONGEST_FOOTPRINT, 1.0 / max(0.01, facing))
             red, green, blue = albedo(
-                tables,
                 (substance, pattern),
                 colours,
                 (s, t, s + shift, t + shift),
