@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.occlusion import STEP_PX
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
 from sim_bridge.sensors.scenery import GLOBE, MANTLE, PATTERN_CODE, SUBSTANCE_CODE, Mesh
 
@@ -49,8 +50,8 @@ AMBIENT, LAMP, FILL = 0.46, 0.50, 0.16
 LAMP_REACH_M = 5.0
 FILL_DIRECTION = (0.48, 0.64, 0.60)
 WARM_RGB = (1.03, 1.0, 0.94)
-# Close above the floor there is less light from everywhere.
-FLOOR_SHADE, FLOOR_SHADE_M = 0.16, 0.35
+# Places whose depths differ by a larger share do not lend each other their openness.
+ONE_SURFACE = 0.06
 SHARPNESS = 5  # a highlight is the cosine to the power of 2 ** SHARPNESS
 # At a grazing angle a pixel covers a longer piece of the surface, but never longer than this many times.
 LONGEST_FOOTPRINT = 8.0
@@ -271,8 +272,27 @@ def _angle(x: float, y: float) -> float:
 
 
 @compiled_loosely
-def paint(mesh: Mesh, view: View, samples: Samples) -> NDArray[np.uint8]:
-    """The picture, uint8 [height, width, 3], of what `rasterise` found."""
+def _open_at(samples: Samples, shares: Float32, u: int, v: int) -> float:
+    """The openness at a pixel: the mean of the four places around it that lie on the same surface."""
+    i, j = v // STEP_PX, u // STEP_PX
+    down, right = v / STEP_PX - i, u / STEP_PX - j
+    height, width = samples.nearness.shape
+    here = samples.nearness[v, u]
+    lost, total = 0.0, 1e-6
+    for below in range(2):
+        row = min((i + below) * STEP_PX, height - 1)
+        for aside in range(2):
+            there = samples.nearness[row, min((j + aside) * STEP_PX, width - 1)]
+            if abs(there - here) < ONE_SURFACE * here:
+                weight = (down if below else 1.0 - down) * (right if aside else 1.0 - right)
+                lost += weight * (1.0 - shares[i + below, j + aside])
+                total += weight
+    return float(1.0 - lost / total)
+
+
+@compiled_loosely
+def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[np.uint8]:
+    """The picture, uint8 [height, width, 3], of what `rasterise` found; `shares` is its openness."""
     height, width = samples.triangle.shape
     picture = np.empty((height, width, 3), dtype=np.uint8)
     before, item_before, part_before = NOTHING, NOTHING, NOTHING
@@ -281,7 +301,6 @@ def paint(mesh: Mesh, view: View, samples: Samples) -> NDArray[np.uint8]:
     eye = (0.0, 0.0, 0.0)
     lamp = (0.0, 0.0, 0.0)
     fill = (0.0, 0.0, 0.0)
-    foot_m = 0.0
     face, substance, pattern, longest, axis = 0, 0, 0, 0, 0
     shift, shininess, period_m = 0.0, 0.0, 1.0
     centre = (0.0, 0.0, 0.0)
@@ -320,7 +339,6 @@ def paint(mesh: Mesh, view: View, samples: Samples) -> NDArray[np.uint8]:
                 if item != item_before:
                     item_before = item
                     x, y, z, cos, sin = mesh.item_pose[item]
-                    foot_m = z
                     dx, dy = view.eye_m[0] - x, view.eye_m[1] - y
                     eye = (cos * dx + sin * dy, cos * dy - sin * dx, view.eye_m[2] - z)
                     dx, dy = mesh.item_light_m[item, 0] - x, mesh.item_light_m[item, 1] - y
@@ -387,9 +405,7 @@ def paint(mesh: Mesh, view: View, samples: Samples) -> NDArray[np.uint8]:
                 # Half-way between Lambert's law and none: walls close to the lamp's foot stay readable.
                 lit = lit * (0.6 + 0.4 * lit) * 1.15 / (1.0 + square / (LAMP_REACH_M * LAMP_REACH_M))
                 aside = 0.5 + 0.5 * (nx * fill[0] + ny * fill[1] + nz * fill[2])
-                above = min(1.0, max(0.0, (pz + foot_m) / FLOOR_SHADE_M))
-                around = AMBIENT * (1.0 - FLOOR_SHADE * (1.0 - above) * (1.0 - abs(nz)))
-                light = around + LAMP * lit + FILL * aside
+                light = (AMBIENT + LAMP * lit + FILL * aside) * _open_at(samples, shares, u, v)
                 shine = 0.0
                 if shininess > 0.0:
                     hx, hy, hz = lx * near + ex * away, ly * near + ey * away, lz * near + ez * away
