@@ -22,8 +22,8 @@ OPTICAL_FRAME = "camera_optical_frame"
 class CameraFrame:
     """One picture: colour where it was asked for, depth, and the item's number at each pixel.
 
-    `numbers` is int32 [height, width], NOTHING where there is no surface; below FIRST_OTHER it is the instance
-    of an object.
+    `numbers` is int32 [height, width], NOTHING where there is no surface; a number below FIRST_OTHER is the
+    instance of an object.
     """
 
     color: ColorImage | None
@@ -62,7 +62,7 @@ class Camera:
         self._scenery = scenery
 
     def take(self, pose: Pose2D, stamp_ns: int, color: bool = True) -> CameraFrame:
-        """What the robot sees from `pose`: some 5 ms at 320 x 240, and 1 ms without `color`.
+        """What the robot sees from `pose`: some 4 ms at 320 x 240, 1 ms without `color`.
 
         Depth is +Inf beyond the camera's range and where there is no surface.
         """
@@ -75,8 +75,8 @@ class Camera:
 def look_at(scenery: Scenery, model: CameraModel, eye_m: Vector3, target_m: Vector3) -> CameraFrame:
     """What a camera at `eye_m` sees that has `target_m` in its middle (`map`), without a range.
 
-    Up in the picture is up, or north where it looks straight down. Raises BadSceneError where eye and target are
-    one point.
+    Up in the picture is up, or north where it looks straight down. Raises BadSceneError where eye and target
+    are one point.
     """
     ahead = np.subtract(target_m, eye_m)
     length_m = float(np.linalg.norm(ahead))

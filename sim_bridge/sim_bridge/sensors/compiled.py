@@ -12,7 +12,7 @@ import numba
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-# Freedom to turn a / b into a * (1 / b) and to take no care of NaN: for colours, which are rounded to bytes anyway.
+# Leave to turn a / b into a * (1 / b) and to take no care of NaN: for colours, which end as bytes anyway.
 _LOOSE = {"arcp", "contract", "nnan", "nsz", "reassoc"}
 
 

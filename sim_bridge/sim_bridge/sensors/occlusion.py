@@ -1,4 +1,4 @@
-"""How much light from all around reaches a surface: less in corners, under tables and beside what stands there.
+"""How much light from all around reaches a surface: less in corners, and beside what stands there.
 
 Judged from the depths in the picture alone, at every STEP_PX-th pixel: how far do the neighbours rise above
 the surface? That is what puts things on the floor rather than before it.

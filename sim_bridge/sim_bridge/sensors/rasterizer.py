@@ -72,7 +72,7 @@ def rasterise(mesh: Mesh, view: View) -> Samples:
 
 @compiled
 def depth_and_numbers(mesh: Mesh, samples: Samples, range_m: float) -> tuple[Float32, Int32]:
-    """Depth along the optical axis (m, +Inf: nothing, or beyond `range_m`) and the item's number (NOTHING)."""
+    """Depth along the optical axis (m, +Inf: none or beyond `range_m`) and the item's number (or NOTHING)."""
     height, width = samples.nearness.shape
     depth = np.empty((height, width), dtype=np.float32)
     numbers = np.empty((height, width), dtype=np.int32)
@@ -214,9 +214,7 @@ def _draw(
     if height_m <= EDGE_ON_M:
         return
     i, j, k = mesh.triangle[at, 0], mesh.triangle[at, 1], mesh.triangle[at, 2]
-    near = (
-        int(points[i, 2] < NEAR_M) + int(points[j, 2] < NEAR_M) + int(points[k, 2] < NEAR_M)
-    )
+    near = int(points[i, 2] < NEAR_M) + int(points[j, 2] < NEAR_M) + int(points[k, 2] < NEAR_M)
     if near == 3:
         return
     # On the plane of the triangle, 1 / depth is linear in u and v.
@@ -236,7 +234,9 @@ def _draw(
     if odd_is_near:
         uj, vj = _cut(view, points, j, i)
         uk, vk = _cut(view, points, k, i)
-        _fill((uj, vj, points[j, 3], points[j, 4], points[k, 3], points[k, 4]), plane, at, nearness, triangles)
+        _fill(
+            (uj, vj, points[j, 3], points[j, 4], points[k, 3], points[k, 4]), plane, at, nearness, triangles
+        )
         _fill((uj, vj, points[k, 3], points[k, 4], uk, vk), plane, at, nearness, triangles)
     else:
         uj, vj = _cut(view, points, i, j)

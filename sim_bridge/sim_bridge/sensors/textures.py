@@ -52,6 +52,18 @@ FILL_DIRECTION = (0.48, 0.64, 0.60)
 WARM_RGB = (1.03, 1.0, 0.94)
 # Places whose depths differ by a larger share do not lend each other their openness.
 ONE_SURFACE = 0.06
+# How bright the highlight of the lamp is on what shines.
+_GLOSS = {
+    Substance.METAL: 0.45,
+    Substance.GLASS: 0.35,
+    Substance.CERAMIC: 0.35,
+    Substance.PLASTIC: 0.14,
+    Substance.LEATHER: 0.14,
+    Substance.TILES: 0.07,
+    Substance.STONE: 0.07,
+    Substance.BOARDS: 0.07,
+}
+GLOSS: Float64 = np.array([_GLOSS.get(substance, 0.0) for substance in Substance])
 SHARPNESS = 5  # a highlight is the cosine to the power of 2 ** SHARPNESS
 # At a grazing angle a pixel covers a longer piece of the surface, but never longer than this many times.
 LONGEST_FOOTPRINT = 8.0
@@ -71,7 +83,7 @@ def _hashed(seed: int) -> Float64:
 
 
 def _clouds() -> Float32:
-    """Smooth noise [_CELLS, _CELLS] in -1..1 that goes on across its borders; its finest waves are 4 cells long."""
+    """Smooth noise [_CELLS, _CELLS] in -1..1, seamless; its waves are 4 to 32 cells long."""
     total = np.zeros((_CELLS, _CELLS))
     at = np.arange(_CELLS)
     for octave, cells in enumerate((4, 8, 16, 32)):
@@ -83,7 +95,7 @@ def _clouds() -> Float32:
         high = (low + 1) % cells
         rows = coarse[low] * (1.0 - ease)[:, None] + coarse[high] * ease[:, None]
         total += (rows[:, low] * (1.0 - ease) + rows[:, high] * ease) / 2.0**octave
-    return (total / np.abs(total).max()).astype(np.float32)
+    return np.asarray(total / np.abs(total).max(), dtype=np.float32)
 
 
 WHITE: Float32 = _hashed(0).astype(np.float32)
@@ -123,7 +135,7 @@ def _line(offset_m: float, width_m: float, footprint_m: float) -> float:
 
 @compiled_loosely
 def _half(at_m: float, period_m: float, footprint_m: float) -> float:
-    """1 in the first half of every period, 0 in the second; soft where a pixel covers both."""
+    """1 in the middle half of every period, 0 around it; soft where a pixel covers both."""
     place = at_m / period_m
     place -= math.floor(place)
     edge = (0.25 - abs(place - 0.5)) * period_m
@@ -160,14 +172,14 @@ def _grain(substance: int, s: float, t: float, footprint_m: float) -> float:
         row = math.floor(t / BOARD_WIDTH_M)
         along = s + BOARD_LENGTH_M * _white(row, 11.5)
         board = math.floor(along / BOARD_LENGTH_M)
-        tone = _white(row, board)
+        tone = _white(row, board) * _share(2.0 * BOARD_WIDTH_M, footprint_m)
         joint = max(
             _line(t - BOARD_WIDTH_M * math.floor(t / BOARD_WIDTH_M + 0.5), BOARD_JOINT_M, footprint_m),
             _line(
                 along - BOARD_LENGTH_M * math.floor(along / BOARD_LENGTH_M + 0.5), BOARD_JOINT_M, footprint_m
             ),
         )
-        wood = _wood(s + 3.7 * tone, t + 5.1 * tone, footprint_m)
+        wood = _wood(s + 1.7 * board, t + 2.3 * board, footprint_m)
         return wood * (1.0 + 0.07 * tone) * (1.0 - 0.45 * joint)
     if substance == FABRIC:
         over = _half(s, WEAVE_M, footprint_m) - _half(t, WEAVE_M, footprint_m)
@@ -176,12 +188,10 @@ def _grain(substance: int, s: float, t: float, footprint_m: float) -> float:
         return 1.0 + 0.07 * over + 0.05 * thread + 0.05 * slub + 0.02 * _smooth(s * 60.0, t * 60.0)
     if substance == CARPET:
         tuft = _white(s / CARPET_M * 2.0, t / CARPET_M * 2.0) * _share(CARPET_M, footprint_m)
-        return 1.0 + 0.13 * tuft + 0.07 * _smooth(s * 160.0, t * 160.0)
+        return 1.0 + 0.13 * tuft + 0.03 * _smooth(s * 160.0, t * 160.0)
     if substance == LEATHER:
         pore = _smooth(s * 8.0 / PORE_M, t * 8.0 / PORE_M)
-        return 1.0 - 0.20 * max(0.0, pore) * _share(PORE_M, footprint_m) + 0.05 * _smooth(
-            s * 50.0, t * 50.0
-        )
+        return 1.0 - 0.20 * max(0.0, pore) * _share(PORE_M, footprint_m) + 0.05 * _smooth(s * 50.0, t * 50.0)
     if substance == METAL:
         brushed = _smooth(s * 12.0, t * 700.0) * _share(0.02, footprint_m)
         return 1.0 + 0.07 * brushed + 0.03 * _smooth(s * 8.0, t * 60.0)
@@ -193,7 +203,7 @@ def _grain(substance: int, s: float, t: float, footprint_m: float) -> float:
         blot = _smooth(s * 400.0, t * 400.0) * _share(0.03, footprint_m)
         return 1.0 + 0.12 * speckle + 0.14 * blot + 0.05 * _smooth(s * 60.0, t * 60.0)
     if substance == TILES:
-        tone = _white(s / TILE_M, t / TILE_M)
+        tone = _white(s / TILE_M, t / TILE_M) * _share(2.0 * TILE_M, footprint_m)
         grout = max(
             _line(s - TILE_M * math.floor(s / TILE_M + 0.5), GROUT_M, footprint_m),
             _line(t - TILE_M * math.floor(t / TILE_M + 0.5), GROUT_M, footprint_m),
@@ -242,20 +252,6 @@ def albedo(
     green = (colours[1] + (colours[4] - colours[1]) * share) * (1.0 + tone)
     blue = (colours[2] + (colours[5] - colours[2]) * share) * (1.0 + 1.1 * tone)
     return min(1.0, max(0.0, red)), min(1.0, max(0.0, green)), min(1.0, max(0.0, blue))
-
-
-@compiled_loosely
-def _gloss(substance: int) -> float:
-    """How bright a highlight is."""
-    if substance == METAL:
-        return 0.45
-    if substance == GLASS or substance == CERAMIC:
-        return 0.35
-    if substance == PLASTIC or substance == LEATHER:
-        return 0.14
-    if substance == TILES or substance == STONE or substance == BOARDS:
-        return 0.07
-    return 0.0
 
 
 @compiled_loosely
@@ -329,7 +325,7 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                     part_before = part
                     substance, pattern, longest, axis, variant = mesh.part_look[part]
                     shift = variant * 0.173
-                    shininess = _gloss(substance)
+                    shininess = GLOSS[substance]
                     c = mesh.part_colour[part]
                     colours = (c[0], c[1], c[2], c[3], c[4], c[5])
                     frame = mesh.part_frame[part]
