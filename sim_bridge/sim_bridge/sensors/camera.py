@@ -10,9 +10,9 @@ from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Float64, Pose2D
 from sim_bridge.homes.shapes import Vector3
-from sim_bridge.sensors.occlusion import openness
 from sim_bridge.sensors.rasterizer import View, depth_and_numbers, rasterise
 from sim_bridge.sensors.scenery import Scenery
+from sim_bridge.sensors.shadows import lightness
 from sim_bridge.sensors.textures import paint
 
 OPTICAL_FRAME = "camera_optical_frame"
@@ -115,7 +115,7 @@ def _rendered(
     depth_m, numbers = depth_and_numbers(scenery.mesh, samples, float(range_m))
     image = None
     if color:
-        pixels = paint(scenery.mesh, view, samples, openness(scenery.mesh, view, samples))
+        pixels = paint(scenery.mesh, view, samples, lightness(scenery.mesh, view, samples))
         image = ColorImage(pixels=pixels, stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME)
     return CameraFrame(
         color=image,

@@ -44,6 +44,9 @@ LUMINANCE = (0.30, 0.59, 0.11)
 # Sides of a cylinder, and of a ball around and from pole to pole, up to a diameter.
 _SIDES: tuple[tuple[float, int, int], ...] = ((0.03, 8, 6), (0.10, 14, 8), (0.30, 20, 10), (math.inf, 32, 14))
 
+# How wide the soft border of a shadow is, half of it outside of the thing: more for what is higher.
+SHADOW_PER_HEIGHT, SHORTEST_SHADOW_M, LONGEST_SHADOW_M = 0.5, 0.03, 0.22
+
 FRAME_WIDTH_M = 0.05
 # Frame and glass stand out of the wall this far, wherever in it the pane lies.
 FRAME_RISE_M, GLASS_RISE_M = 0.025, 0.010
@@ -88,6 +91,7 @@ class Mesh(NamedTuple):
     item_vertices: Int32  # [items + 1]
     item_triangles: Int32  # [items + 1]
     item_sphere_m: Float64  # [items, 4]: centre and radius of a ball around it
+    item_foot_m: Float64  # [items, 6]: of its shadow middle x, y, half extents, height, reach (0: none)
     item_pose: Float64  # [items, 5]: x, y, z in `map`, cos yaw, sin yaw
     item_light_m: Float64  # [items, 3], `map`
     item_number: Int32  # [items]
@@ -274,6 +278,7 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
         item_vertices=np.array(item_vertices, dtype=np.int32),
         item_triangles=np.array(item_triangles, dtype=np.int32),
         item_sphere_m=np.array([_sphere(item.parts) for item in items], dtype=np.float64).reshape(-1, 4),
+        item_foot_m=np.array([_foot(item) for item in items], dtype=np.float64).reshape(-1, 6),
         item_pose=np.array(poses, dtype=np.float64).reshape(-1, 5),
         item_light_m=np.array([item.light_m for item in items], dtype=np.float64).reshape(-1, 3),
         item_number=np.array([item.number for item in items], dtype=np.int32),
@@ -286,6 +291,17 @@ def _sphere(parts: tuple[Part, ...]) -> tuple[float, float, float, float]:
     x, y, z = ((low + high) / 2.0).tolist()
     # Round parts are polygons that reach out of the true ones a little.
     return x, y, z, float(np.linalg.norm(high - low)) * 0.51
+
+
+def _foot(item: Item) -> tuple[float, float, float, float, float, float]:
+    """What the item's shadow is made of, as Mesh says; the building throws none."""
+    if item.unseen:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    low, high = extent(item.parts)
+    reach_m = min(LONGEST_SHADOW_M, max(SHORTEST_SHADOW_M, SHADOW_PER_HEIGHT * (high[2] - low[2])))
+    x_m, y_m = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0
+    x_half_m, y_half_m = (max(0.0, (high[at] - low[at] - reach_m) / 2.0) for at in (0, 1))
+    return x_m, y_m, x_half_m, y_half_m, low[2], reach_m
 
 
 def _planes(vertex_m: Float64, triangles: NDArray[np.int64]) -> Float64:

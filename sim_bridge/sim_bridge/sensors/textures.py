@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
-from sim_bridge.sensors.occlusion import STEP_PX
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
 from sim_bridge.sensors.scenery import GLOBE, MANTLE, PATTERN_CODE, SUBSTANCE_CODE, Mesh
 
@@ -50,8 +49,6 @@ AMBIENT, LAMP, FILL = 0.46, 0.50, 0.16
 LAMP_REACH_M = 5.0
 FILL_DIRECTION = (0.48, 0.64, 0.60)
 WARM_RGB = (1.03, 1.0, 0.94)
-# Places whose depths differ by a larger share do not lend each other their openness.
-ONE_SURFACE = 0.06
 # How bright the highlight of the lamp is on what shines.
 _GLOSS = {
     Substance.METAL: 0.45,
@@ -268,27 +265,8 @@ def _angle(x: float, y: float) -> float:
 
 
 @compiled_loosely
-def _open_at(samples: Samples, shares: Float32, u: int, v: int) -> float:
-    """The openness at a pixel: the mean of the four places around it that lie on the same surface."""
-    i, j = v // STEP_PX, u // STEP_PX
-    down, right = v / STEP_PX - i, u / STEP_PX - j
-    height, width = samples.nearness.shape
-    here = samples.nearness[v, u]
-    lost, total = 0.0, 1e-6
-    for below in range(2):
-        row = min((i + below) * STEP_PX, height - 1)
-        for aside in range(2):
-            there = samples.nearness[row, min((j + aside) * STEP_PX, width - 1)]
-            if abs(there - here) < ONE_SURFACE * here:
-                weight = (down if below else 1.0 - down) * (right if aside else 1.0 - right)
-                lost += weight * (1.0 - shares[i + below, j + aside])
-                total += weight
-    return float(1.0 - lost / total)
-
-
-@compiled_loosely
 def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[np.uint8]:
-    """The picture, uint8 [height, width, 3], of what `rasterise` found; `shares` is its openness."""
+    """The picture, uint8 [height, width, 3], of what `rasterise` found; `shares` is its lightness."""
     height, width = samples.triangle.shape
     picture = np.empty((height, width, 3), dtype=np.uint8)
     before, item_before, part_before = NOTHING, NOTHING, NOTHING
@@ -401,7 +379,7 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                 # Half-way between Lambert's law and none: walls close to the lamp's foot stay readable.
                 lit = lit * (0.6 + 0.4 * lit) * 1.15 / (1.0 + square / (LAMP_REACH_M * LAMP_REACH_M))
                 aside = 0.5 + 0.5 * (nx * fill[0] + ny * fill[1] + nz * fill[2])
-                light = (AMBIENT + LAMP * lit + FILL * aside) * _open_at(samples, shares, u, v)
+                light = (AMBIENT + LAMP * lit + FILL * aside) * shares[v, u]
                 shine = 0.0
                 if shininess > 0.0:
                     hx, hy, hz = lx * near + ex * away, ly * near + ey * away, lz * near + ez * away
