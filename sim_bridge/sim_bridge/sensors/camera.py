@@ -1,37 +1,35 @@
-"""The robot's RGB-D camera: its pinhole model, its place on the robot, and its pictures.
-
-Pixel (u, v) is a point sample: column u, row v, the centre of the first at (0, 0), as ROS counts. PyBullet's
-software renderer samples in just that way once the projection is moved by half a pixel.
-"""
+"""The robot's RGB-D camera: its pinhole model, its place on the robot, and its pictures."""
 
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Float64, Pose2D
-from sim_bridge.sensors.world import NOTHING, World
+from sim_bridge.homes.shapes import Vector3
+from sim_bridge.sensors.rasterizer import View, depth_and_numbers, rasterise
+from sim_bridge.sensors.scenery import Scenery
+from sim_bridge.sensors.shadows import lightness
+from sim_bridge.sensors.textures import paint
 
 OPTICAL_FRAME = "camera_optical_frame"
-NEAR_M = 0.05
-FAR_M = 30.0
-LIGHT_DIRECTION = (0.5, -0.8, 1.2)
-AMBIENT, DIFFUSE, SPECULAR = 0.74, 0.36, 0.03
-# The renderer tells body and link in one number.
-BODY_MASK = (1 << 24) - 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CameraFrame:
-    """One picture: colour, depth and, for tests, the body number at each pixel (int32, NOTHING: none)."""
+    """One picture: colour where it was asked for, depth, and the item's number at each pixel.
 
-    color: ColorImage
+    `numbers` is int32 [height, width], NOTHING where there is no surface; a number below FIRST_OTHER is the
+    instance of an object.
+    """
+
+    color: ColorImage | None
     depth: DepthImage
     model: CameraModel
-    bodies: NDArray[np.int32]
+    numbers: NDArray[np.int32]
 
 
 def camera_model(width: int, height: int, horizontal_view_rad: float, stamp_ns: int = 0) -> CameraModel:
@@ -55,68 +53,73 @@ def map_from_optical(mount: CameraMount, pose: Pose2D, points_m: Float64) -> Flo
 
 
 class Camera:
-    """Takes pictures of one world. Same thread as the world."""
+    """Takes pictures of one scenery, from the robot. Same thread as whoever moves things in it."""
 
-    def __init__(self, world: World, model: CameraModel, mount: CameraMount, range_m: float) -> None:
+    def __init__(self, scenery: Scenery, model: CameraModel, mount: CameraMount, range_m: float) -> None:
         self.model = model
         self.mount = mount
         self.range_m = range_m
-        self._world = world
-        self._projection = _projection(model)
+        self._scenery = scenery
 
-    def take(self, pose: Pose2D, stamp_ns: int) -> CameraFrame:
-        """Render what the robot sees from `pose`: some 10 to 20 ms at 320 x 240.
+    def take(self, pose: Pose2D, stamp_ns: int, color: bool = True) -> CameraFrame:
+        """What the robot sees from `pose`: some 4 ms at 320 x 240, 1 ms without `color`.
 
-        Depth is +Inf beyond the camera's range and where the picture shows no surface.
+        Depth is +Inf beyond the camera's range and where there is no surface.
         """
-        eye, ahead, up = map_from_optical(
-            self.mount, pose, np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-        )
-        view = pybullet.computeViewMatrix(eye.tolist(), ahead.tolist(), (up - eye).tolist())
-        model = self.model
-        _, _, rgba, buffer, bodies = pybullet.getCameraImage(
-            model.width,
-            model.height,
-            viewMatrix=view,
-            projectionMatrix=self._projection,
-            lightDirection=LIGHT_DIRECTION,
-            lightAmbientCoeff=AMBIENT,
-            lightDiffuseCoeff=DIFFUSE,
-            lightSpecularCoeff=SPECULAR,
-            shadow=0,
-            renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._world.client,
-        )
-        shape = (model.height, model.width)
-        pixels = np.ascontiguousarray(np.asarray(rgba, dtype=np.uint8).reshape(*shape, 4)[:, :, :3])
-        bodies = np.asarray(bodies, dtype=np.int32).reshape(shape)
-        bodies = np.where(bodies >= 0, bodies & BODY_MASK, NOTHING)
-        depth_m = _metres(np.asarray(buffer, dtype=np.float64).reshape(shape))
-        depth_m[(bodies == NOTHING) | (depth_m > self.range_m)] = np.inf
-        return CameraFrame(
-            color=ColorImage(pixels=pixels, stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME),
-            depth=DepthImage(depth_m=depth_m.astype(np.float32), stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME),
-            model=replace(model, stamp_ns=stamp_ns),
-            bodies=bodies.astype(np.int32),
+        axes = map_from_optical(self.mount, pose, np.concatenate([np.zeros((1, 3)), np.eye(3)]))
+        return _rendered(
+            self._scenery, self.model, axes[1:] - axes[0], axes[0], self.range_m, stamp_ns, color=color
         )
 
 
-def _metres(buffer: Float64) -> Float64:
-    """Depth along the optical axis from the renderer's buffer, which counts 0..1 from near to far."""
-    return FAR_M * NEAR_M / (FAR_M - (FAR_M - NEAR_M) * buffer)
+def look_at(scenery: Scenery, model: CameraModel, eye_m: Vector3, target_m: Vector3) -> CameraFrame:
+    """What a camera at `eye_m` sees that has `target_m` in its middle (`map`), without a range.
 
-
-def _projection(model: CameraModel) -> list[float]:
-    """The projection that puts pixel samples where the model says.
-
-    The renderer samples column u at u / width of the picture's width, and row v at (v + 1) / height of its
-    height from the top (measured; the tests pin it).
+    Up in the picture is up, or north where it looks straight down. Raises BadSceneError where eye and target
+    are one point.
     """
-    left = -model.cx / model.fx
-    right = (model.width - model.cx) / model.fx
-    top = (model.cy + 1.0) / model.fy
-    bottom = -(model.height - 1.0 - model.cy) / model.fy
-    matrix: list[float] = pybullet.computeProjectionMatrix(
-        left * NEAR_M, right * NEAR_M, bottom * NEAR_M, top * NEAR_M, NEAR_M, FAR_M
+    ahead = np.subtract(target_m, eye_m)
+    length_m = float(np.linalg.norm(ahead))
+    if length_m == 0.0:
+        raise BadSceneError(f"a camera at {eye_m!r} cannot look at where it is itself; move its target")
+    ahead = ahead / length_m
+    straight = float(np.hypot(ahead[0], ahead[1])) < 1e-9
+    right = np.cross(ahead, (0.0, 1.0, 0.0) if straight else (0.0, 0.0, 1.0))
+    right = right / np.linalg.norm(right)
+    turn = np.stack([right, np.cross(ahead, right), ahead])
+    return _rendered(scenery, model, turn, np.asarray(eye_m, dtype=np.float64), math.inf, 0, color=True)
+
+
+def _rendered(
+    scenery: Scenery,
+    model: CameraModel,
+    turn: Float64,
+    eye_m: Float64,
+    range_m: float,
+    stamp_ns: int,
+    *,
+    color: bool,
+) -> CameraFrame:
+    """The picture of a camera at `eye_m` whose right, down and forward are the rows of `turn` (`map`)."""
+    view = View(
+        turn=np.ascontiguousarray(turn),
+        eye_m=np.ascontiguousarray(eye_m),
+        fx=float(model.fx),
+        fy=float(model.fy),
+        cx=float(model.cx),
+        cy=float(model.cy),
+        width=int(model.width),
+        height=int(model.height),
     )
-    return matrix
+    samples = rasterise(scenery.mesh, view)
+    depth_m, numbers = depth_and_numbers(scenery.mesh, samples, float(range_m))
+    image = None
+    if color:
+        pixels = paint(scenery.mesh, view, samples, lightness(scenery.mesh, view, samples))
+        image = ColorImage(pixels=pixels, stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME)
+    return CameraFrame(
+        color=image,
+        depth=DepthImage(depth_m=depth_m, stamp_ns=stamp_ns, frame_id=OPTICAL_FRAME),
+        model=replace(model, stamp_ns=stamp_ns),
+        numbers=numbers,
+    )

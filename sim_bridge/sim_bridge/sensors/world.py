@@ -1,5 +1,6 @@
-"""The home as PyBullet bodies: what the camera renders and the rays meet."""
+"""The home as PyBullet bodies: what rays meet. Nothing is rendered with it, so bodies have no look."""
 
+import math
 import weakref
 from collections.abc import Sequence
 from types import TracebackType
@@ -9,31 +10,27 @@ import pybullet
 
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Float64
-from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Wall
-from sim_bridge.homes.rect import Rect, Side
-from sim_bridge.homes.shapes import Colour, Part, Shape, box
+from sim_bridge.homes.home import Home
+from sim_bridge.homes.shapes import Axis, Part, Shape, Vector3
+from sim_bridge.sensors.scenery import floor_part, wall_part, window_parts
 
-FLOOR_THICKNESS_M = 0.05
 # PyBullet takes this many primitives in one body and this many rays in one call.
 MAX_PARTS = 16
 MAX_RAYS = 4096
 NOTHING = -1
+ORIGIN_M: Vector3 = (0.0, 0.0, 0.0)
 
 _GEOMETRY = {
     Shape.BOX: pybullet.GEOM_BOX,
     Shape.CYLINDER: pybullet.GEOM_CYLINDER,
     Shape.BALL: pybullet.GEOM_SPHERE,
 }
-
-# Outward normals of a box's faces, by the side of the wall that they lie on (top and bottom: none).
-_NORMALS: tuple[tuple[Side | None, tuple[float, float, float]], ...] = (
-    (Side.WEST, (-1.0, 0.0, 0.0)),
-    (Side.EAST, (1.0, 0.0, 0.0)),
-    (Side.SOUTH, (0.0, -1.0, 0.0)),
-    (Side.NORTH, (0.0, 1.0, 0.0)),
-    (None, (0.0, 0.0, -1.0)),
-    (None, (0.0, 0.0, 1.0)),
-)
+# PyBullet's cylinders stand upright: these turns (roll, pitch, yaw) lay them along an axis.
+_TURN_RAD: dict[Axis, Vector3] = {
+    Axis.X: (0.0, math.pi / 2.0, 0.0),
+    Axis.Y: (math.pi / 2.0, 0.0, 0.0),
+    Axis.Z: (0.0, 0.0, 0.0),
+}
 
 
 class World:
@@ -43,21 +40,25 @@ class World:
     """
 
     def __init__(self, home: Home) -> None:
-        """Build the bodies (some 100 ms). Raises BadSceneError where PyBullet has no world left."""
+        """Build the bodies (some 50 ms). Raises BadSceneError where PyBullet has no world left."""
         self.client: int = pybullet.connect(pybullet.DIRECT)
         if self.client < 0:
             raise BadSceneError("PyBullet opens no more worlds in this process: close one first")
         self._finalizer = weakref.finalize(self, pybullet.disconnect, self.client)
         self.instance_of: dict[int, int] = {}
+        self._bodies_of: dict[int, list[int]] = {}
         for room in home.rooms:
-            self._add_floor(room.inside, room.floor_colour)
+            self._add((floor_part(room),), ORIGIN_M, 0.0)
         for wall in home.walls:
-            self._add_wall(wall)
+            self._add((wall_part(wall),), ORIGIN_M, 0.0)
+        for window in home.windows:
+            self._add(window_parts(window), ORIGIN_M, 0.0)
         for piece in home.furniture:
             self._add(piece.parts, (piece.x_m, piece.y_m, 0.0), piece.yaw_rad)
         for thing in home.objects:
-            for body in self._add(thing.parts, (thing.x_m, thing.y_m, thing.z_m), thing.yaw_rad):
-                self.instance_of[body] = thing.instance
+            bodies = self._add(thing.parts, (thing.x_m, thing.y_m, thing.z_m), thing.yaw_rad)
+            self._bodies_of[thing.instance] = bodies
+            self.instance_of |= dict.fromkeys(bodies, thing.instance)
 
     def close(self) -> None:
         """Give the world back; a second call does nothing."""
@@ -89,93 +90,63 @@ class World:
             shares += [hit[2] for hit in hits]
         return np.array(shares, dtype=np.float64), np.array(bodies, dtype=np.int64)
 
-    def _add_floor(self, inside: Rect, colour: Colour) -> None:
-        """A slab below z = 0 that reaches half-way under the walls, so that doorways have a floor."""
-        area = inside.grown(WALL_THICKNESS_M / 2.0)
-        x_m, y_m = area.centre_m
-        size = (area.width_m, area.depth_m, FLOOR_THICKNESS_M)
-        self._add((box((0.0, 0.0, -FLOOR_THICKNESS_M / 2.0), size, colour),), (x_m, y_m, 0.0), 0.0)
+    def move(self, instance: int, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
+        """Put an object elsewhere (`map`). Raises BadSceneError where there is none of that instance."""
+        if instance not in self._bodies_of:
+            raise BadSceneError(f"the home has no object {instance!r}, so it cannot be moved")
+        for body in self._bodies_of[instance]:
+            pybullet.resetBasePositionAndOrientation(
+                body, (x_m, y_m, z_m), _quaternion(yaw_rad), physicsClientId=self.client
+            )
 
-    def _add_wall(self, wall: Wall) -> None:
-        """A box to touch, but only the faces that are ever seen to look at.
-
-        The renderer's time goes with the pixels it paints, also those it paints over later: hidden faces
-        would double it.
-        """
-        x_m, y_m = wall.base.centre_m
-        half = (wall.base.width_m / 2.0, wall.base.depth_m / 2.0, (wall.z_max_m - wall.z_min_m) / 2.0)
-        vertices, normals, indices = _faces(half, wall.hidden)
-        pybullet.createMultiBody(
-            baseMass=0.0,
-            baseCollisionShapeIndex=pybullet.createCollisionShape(
-                pybullet.GEOM_BOX, halfExtents=half, physicsClientId=self.client
-            ),
-            baseVisualShapeIndex=pybullet.createVisualShape(
-                pybullet.GEOM_MESH,
-                vertices=vertices,
-                normals=normals,
-                indices=indices,
-                rgbaColor=(*wall.colour, 1.0),
-                physicsClientId=self.client,
-            ),
-            basePosition=(x_m, y_m, (wall.z_min_m + wall.z_max_m) / 2.0),
-            physicsClientId=self.client,
+    def add_box(self, centre_m: Vector3, size_m: Vector3) -> int:
+        """Put a box in the way (`map`), and give the number of its body."""
+        halves = [length / 2.0 for length in size_m]
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_BOX, halfExtents=halves, physicsClientId=self.client
         )
-
-    def _add(self, parts: Sequence[Part], origin_m: tuple[float, float, float], yaw_rad: float) -> list[int]:
-        turn = pybullet.getQuaternionFromEuler((0.0, 0.0, yaw_rad))
-        firsts = range(0, len(parts), MAX_PARTS)
-        return [self._add_body(parts[at : at + MAX_PARTS], origin_m, turn) for at in firsts]
-
-    def _add_body(
-        self,
-        parts: Sequence[Part],
-        origin_m: tuple[float, float, float],
-        turn: tuple[float, float, float, float],
-    ) -> int:
-        halves = [[length / 2.0 for length in part.size_m] for part in parts]
-        shape = {
-            "shapeTypes": [_GEOMETRY[part.shape] for part in parts],
-            "halfExtents": halves,
-            "radii": [half[0] for half in halves],
-            "lengths": [part.size_m[2] for part in parts],
-            "physicsClientId": self.client,
-        }
-        centres = [list(part.centre_m) for part in parts]
         body: int = pybullet.createMultiBody(
             baseMass=0.0,
-            baseCollisionShapeIndex=pybullet.createCollisionShapeArray(
-                collisionFramePositions=centres, **shape
-            ),
-            baseVisualShapeIndex=pybullet.createVisualShapeArray(
-                visualFramePositions=centres,
-                rgbaColors=[[*part.colour, 1.0] for part in parts],
-                **shape,
-            ),
+            baseCollisionShapeIndex=shape,
+            basePosition=centre_m,
+            physicsClientId=self.client,
+        )
+        return body
+
+    def remove(self, body: int) -> None:
+        """Take a box away that `add_box` made."""
+        pybullet.removeBody(body, physicsClientId=self.client)
+
+    def _add(self, parts: Sequence[Part], origin_m: Vector3, yaw_rad: float) -> list[int]:
+        firsts = range(0, len(parts), MAX_PARTS)
+        return [self._add_body(parts[at : at + MAX_PARTS], origin_m, yaw_rad) for at in firsts]
+
+    def _add_body(self, parts: Sequence[Part], origin_m: Vector3, yaw_rad: float) -> int:
+        across = [part.size_m[part.axis.others[0]] for part in parts]
+        shape = pybullet.createCollisionShapeArray(
+            shapeTypes=[_GEOMETRY[part.shape] for part in parts],
+            halfExtents=[[length / 2.0 for length in part.size_m] for part in parts],
+            radii=[diameter / 2.0 for diameter in across],
+            lengths=[part.size_m[part.axis] for part in parts],
+            collisionFramePositions=[list(part.centre_m) for part in parts],
+            collisionFrameOrientations=[
+                pybullet.getQuaternionFromEuler(
+                    _TURN_RAD[part.axis if part.shape is Shape.CYLINDER else Axis.Z]
+                )
+                for part in parts
+            ],
+            physicsClientId=self.client,
+        )
+        body: int = pybullet.createMultiBody(
+            baseMass=0.0,
+            baseCollisionShapeIndex=shape,
             basePosition=origin_m,
-            baseOrientation=turn,
+            baseOrientation=_quaternion(yaw_rad),
             physicsClientId=self.client,
         )
         return body
 
 
-def _faces(
-    half_m: tuple[float, float, float], hidden: Side
-) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """Vertices, normals and triangles of a box without its hidden side; each face is seen from outside."""
-    vertices: list[list[float]] = []
-    normals: list[list[float]] = []
-    indices: list[int] = []
-    for side, normal in _NORMALS:
-        if side is hidden:
-            continue
-        out = np.array(normal)
-        # Two edge directions whose cross product points outwards: the corners then run counter-clockwise.
-        first = np.roll(out, 1)
-        second = np.cross(out, first)
-        corners = [out + a * first + b * second for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        at = len(vertices)
-        vertices += [(corner * half_m).tolist() for corner in corners]
-        normals += [list(normal)] * 4
-        indices += [at, at + 1, at + 2, at, at + 2, at + 3]
-    return vertices, normals, indices
+def _quaternion(yaw_rad: float) -> tuple[float, float, float, float]:
+    quaternion: tuple[float, float, float, float] = pybullet.getQuaternionFromEuler((0.0, 0.0, yaw_rad))
+    return quaternion

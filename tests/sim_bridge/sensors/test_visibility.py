@@ -5,31 +5,28 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
 from robustnav_msgs_py.values import Pose2D
-from sim_bridge.sensors.camera import Camera
+from sim_bridge.sensors.camera import Camera, CameraFrame
+from sim_bridge.sensors.rasterizer import NOTHING
+from sim_bridge.sensors.scenery import FIRST_OTHER, scenery_of
 from sim_bridge.sensors.visibility import RAYS_PER_AXIS
-from sim_bridge.sensors.world import NOTHING, World
 from sim_bridge.simulation import Simulation
 
 FreePoses = Callable[..., list[Pose2D]]
 
 
-def instances(simulation: Simulation, bodies: NDArray[np.int32]) -> NDArray[np.int64]:
-    """The object at each pixel, -1 where none."""
-    shown = np.full(bodies.shape, NOTHING, dtype=np.int64)
-    for body, instance in simulation._world.instance_of.items():
-        shown[bodies == body] = instance
-    return shown
+def instances(frame: CameraFrame) -> np.ndarray:
+    """The object at each pixel, NOTHING where none."""
+    return np.where(frame.numbers < FIRST_OTHER, frame.numbers, NOTHING)
 
 
 def test_boxes_agree_with_the_segmentation(simulation: Simulation, free_poses: FreePoses) -> None:
     worst = []
     for pose in free_poses(simulation.home, 60, seed=2):
         truth = simulation._observer.look(pose, 7)
-        shown = instances(simulation, simulation._camera.take(pose, 7).bodies)
+        shown = instances(simulation._camera.take(pose, 7, color=False))
         listed = set(truth.instance.tolist())
         for instance in set(np.unique(shown).tolist()) - {NOTHING}:
             rows, columns = np.nonzero(shown == instance)
@@ -50,23 +47,27 @@ def test_fractions_agree_with_a_picture_of_it_alone(simulation: Simulation, free
     errors, partly = [], 0
     for thing in home.objects[::2]:
         alone = dataclasses.replace(
-            home, rooms=(), walls=(), furniture=(), objects=(dataclasses.replace(thing, instance=0),)
+            home,
+            rooms=(),
+            walls=(),
+            windows=(),
+            furniture=(),
+            objects=(dataclasses.replace(thing, instance=0),),
         )
-        with World(alone) as world:
-            lonely = Camera(world, camera.model, camera.mount, camera.range_m)
-            for place in free_poses(home, 25, seed=thing.instance):
-                bearing_rad = math.atan2(thing.y_m - place.y_m, thing.x_m - place.x_m)
-                pose = Pose2D(x_m=place.x_m, y_m=place.y_m, yaw_rad=bearing_rad + 0.3)
-                truth = simulation._observer.look(pose, 0)
-                if thing.instance not in truth.instance:
-                    continue
-                covered = (lonely.take(pose, 0).bodies != NOTHING).sum()
-                if covered < 40:
-                    continue
-                shown = instances(simulation, camera.take(pose, 0).bodies)
-                fraction = float(truth.visible_fraction[truth.instance == thing.instance][0])
-                errors.append(abs(fraction - (shown == thing.instance).sum() / covered))
-                partly += 0.1 < fraction < 0.9
+        lonely = Camera(scenery_of(alone), camera.model, camera.mount, camera.range_m)
+        for place in free_poses(home, 25, seed=thing.instance):
+            bearing_rad = math.atan2(thing.y_m - place.y_m, thing.x_m - place.x_m)
+            pose = Pose2D(x_m=place.x_m, y_m=place.y_m, yaw_rad=bearing_rad + 0.3)
+            truth = simulation._observer.look(pose, 0)
+            if thing.instance not in truth.instance:
+                continue
+            covered = (lonely.take(pose, 0, color=False).numbers != NOTHING).sum()
+            if covered < 40:
+                continue
+            shown = instances(camera.take(pose, 0, color=False))
+            fraction = float(truth.visible_fraction[truth.instance == thing.instance][0])
+            errors.append(abs(fraction - (shown == thing.instance).sum() / covered))
+            partly += 0.1 < fraction < 0.9
     assert len(errors) > 10
     assert partly > 0
     assert max(errors) < 0.12
