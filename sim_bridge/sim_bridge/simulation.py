@@ -1,38 +1,57 @@
 """The whole simulator without ROS: a home, a robot in it, its sensors, and time that goes in steps."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 
+import numpy as np
+
+from robustnav_msgs_py.conversions.transforms import BASE_FRAME
+from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.records import Episode
-from robustnav_msgs_py.values import CameraModel, LaserScan, Odometry, Pose2D, Velocity, VisibleObjects
-from sim_bridge.homes.floor_plan import RESOLUTION_M
+from robustnav_msgs_py.values import LaserScan, Odometry, Pose2D, Velocity
+from sim_bridge.faults import Clear, Faults, HomeNames, Move, Sensor, parse_fault
+from sim_bridge.homes.build import build_home
+from sim_bridge.homes.furniture.catalogue import default_style
 from sim_bridge.homes.generator import generate_home
 from sim_bridge.homes.home import Home
-from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.objects.catalogue import default_look
+from sim_bridge.homes.occluders.placing import place_occluders
+from sim_bridge.homes.rooms.room_programmes import Difficulty
+from sim_bridge.homes.scene_files.scene_file import read_scene
 from sim_bridge.parameters import SimParameters
+from sim_bridge.robot.actions import ActionRunner, parse_action
+from sim_bridge.robot.bumper import Bumper
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.goal_follower import GoalFollower
+from sim_bridge.robot.odometry import OdometryDrift, WheelOdometry
+from sim_bridge.robot.planar import composed, inverse
 from sim_bridge.robot.route import RoutePlanner
-from sim_bridge.sensors.camera import Camera, CameraFrame, camera_model
+from sim_bridge.sensors.camera import Camera, camera_model
+from sim_bridge.sensors.camera_driver import CameraDriver, Shot, Wanted
+from sim_bridge.sensors.degraded_camera import DegradedCamera
+from sim_bridge.sensors.frame_delay import FrameDelay, FrameDropper
 from sim_bridge.sensors.scan import Laser
 from sim_bridge.sensors.visibility import Observer
-from sim_bridge.sensors.world import World
+from sim_bridge.stage import Stage
 
 NS_PER_S = 1_000_000_000
 # ROS takes time 0 for "no time yet".
 START_NS = NS_PER_S
-ODOM_FRAME = "map"  # nothing drifts here, so odometry is the pose in the map
-BASE_FRAME = "base_link"
+MAP_FRAME, ODOM_FRAME = "map", "odom"
+# What chance decides apart from the home, each from a stream of its own.
+OCCLUDER_STREAM, DRIFT_STREAM, MOVE_STREAM = 101, 102, 103
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Due:
-    """Which sensors are to be read after a step."""
+    """Which sensors are to be read after a step, and whether the bumper was pressed or released."""
 
     odom: bool
     scan: bool
     camera: bool
+    bumper: bool
 
 
 class Simulation:
@@ -42,14 +61,16 @@ class Simulation:
     """
 
     def __init__(self, parameters: SimParameters) -> None:
-        """Generate and build the home (some 0.3 s). Raises BadSceneError where the seed gives none."""
+        """Read or generate the home, and build it (some 0.3 s).
+
+        Raises BadSceneError where the seed gives none, and what `read_scene` raises.
+        """
         self.parameters = parameters
         self.mount = CameraMount()
-        self.home: Home = generate_home(
-            parameters.seed, rooms=parameters.rooms or None, objects=parameters.objects or None
-        )
-        rects = self.home.obstacles()
-        obstacles = Obstacles(rects, self.home.bounds)
+        home = _home(parameters)
+        moved_in = place_occluders(_stream(parameters, OCCLUDER_STREAM), home, parameters.occluders)
+        self.stage = Stage(home, moved_in)
+        self._start = home.start
         limits = DriveLimits(
             speed_m_s=parameters.max_speed_m_s,
             turn_rad_s=parameters.max_turn_rad_s,
@@ -57,22 +78,40 @@ class Simulation:
             turn_acceleration_rad_s2=parameters.turn_acceleration_rad_s2,
             braking=parameters.braking,
         )
-        self.drive = Drive(obstacles, limits, parameters.robot_radius_m, parameters.stop_distance_m)
-        grid = ClearanceGrid(self.home.bounds, RESOLUTION_M).with_rects(rects)
-        self.follower = GoalFollower(self.drive, RoutePlanner(obstacles, grid, self.drive.keep_m))
+        self.drive = Drive(
+            self.stage.obstacles, limits, parameters.robot_radius_m, parameters.stop_distance_m
+        )
+        self.drive.place(home.start)
+        self.follower = GoalFollower(self.drive, self._planner())
+        self.actions = ActionRunner(self.drive)
+        self.faults = Faults()
+        self.bumper = Bumper()
+        drift = OdometryDrift(
+            share_per_m=parameters.drift_share_per_m,
+            rad_per_m=parameters.drift_rad_per_m,
+            rad_per_rad=parameters.drift_rad_per_rad,
+        )
+        self._drifts = drift != OdometryDrift()
+        self._wheels = WheelOdometry(drift, _stream(parameters, DRIFT_STREAM), home.start)
         model = camera_model(parameters.camera_width, parameters.camera_height, parameters.camera_view_rad)
-        self._world = World(self.home)
-        self._camera = Camera(self._world, model, self.mount, parameters.camera_range_m)
-        self._observer = Observer(self._world, self.home, model, self.mount, parameters.camera_range_m)
-        self._laser = Laser(self._world, parameters.scan_rays, parameters.scan_range_m)
+        range_m = parameters.camera_range_m
+        self._camera = Camera(self.stage.scenery, model, self.mount, range_m)
+        self._observer = Observer(self.stage.world, home, model, self.mount, range_m)
+        self._driver = CameraDriver(
+            DegradedCamera(self._camera, parameters, parameters.seed),
+            self._observer,
+            FrameDropper(parameters.frame_drop, parameters.seed),
+            FrameDelay[Shot](parameters.frame_delay_s, parameters.frame_jitter_s, parameters.seed),
+        )
+        self._laser = Laser(self.stage.world, parameters.scan_rays, parameters.scan_range_m)
+        self._move_rng = _stream(parameters, MOVE_STREAM)
         self._steps = 0
         self._command = STANDSTILL
         self._command_step = 0
-        self.drive.place(self.home.start)
 
     def close(self) -> None:
         """Give PyBullet's world back; a second call does nothing."""
-        self._world.close()
+        self.stage.close()
 
     def __enter__(self) -> "Simulation":
         return self
@@ -81,6 +120,11 @@ class Simulation:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    @property
+    def home(self) -> Home:
+        """The home as the map knows it, its objects where they are now."""
+        return self.stage.home
 
     @property
     def now_ns(self) -> int:
@@ -92,20 +136,39 @@ class Simulation:
         """Simulated time of one step."""
         return 1.0 / self.parameters.control_hz
 
+    @property
+    def problem(self) -> str:
+        """Why the last goal or action was given up, "" where none was."""
+        return self.follower.problem or self.actions.problem
+
+    # What the robot is told.
+
     def command(self, velocity: Velocity) -> None:
-        """Drive with `velocity`, clamped to the limits, until the watchdog ends it; ends a goal."""
-        self.follower.cancel()
+        """Drive with `velocity`, clamped to the limits, until the watchdog ends it; ends goal and actions."""
+        self.stop()
         self._command = velocity
         self._command_step = self._steps
 
     def go_to(self, goal: Pose2D) -> None:
         """Drive to a pose in `map`. Raises GoalRefusedError, and changes nothing, where that cannot be."""
         self.follower.accept(goal)
+        self.actions.cancel()
+        self._command = STANDSTILL
+
+    def act(self, line: str) -> None:
+        """Carry out one discrete action, after those that wait.
+
+        Raises BadMessageError or ActionRefusedError, and changes nothing, where it cannot be.
+        """
+        action = parse_action(line, self.parameters.action_step_m, self.parameters.action_turn_rad)
+        self.actions.accept(action)
+        self.follower.cancel()
         self._command = STANDSTILL
 
     def stop(self) -> None:
-        """Forget command and goal, and brake."""
+        """Forget command, goal and actions, and brake."""
         self.follower.cancel()
+        self.actions.cancel()
         self._command = STANDSTILL
 
     def place(self, pose: Pose2D) -> None:
@@ -114,64 +177,158 @@ class Simulation:
         self.stop()
 
     def reset(self) -> None:
-        """Put the robot back to its start, standing; time goes on."""
-        self.place(self.home.start)
+        """Put the robot back to its start, standing, with nothing going wrong; time goes on."""
+        self.faults.clear()
+        self._close_doors()
+        self._driver.reset()
+        self.place(self._start)
+
+    def fail(self, line: str) -> bool:
+        """Let something go wrong (`faults`); whether objects are elsewhere now.
+
+        Raises BadMessageError, and changes nothing, where the line asks for nothing that can be.
+        """
+        home = self.home
+        names = HomeNames(
+            doors=tuple(door.rooms for door in home.doors),
+            objects=tuple(thing.instance for thing in home.objects),
+            furniture=tuple(piece.name for piece in home.furniture if piece.carries),
+        )
+        fault = parse_fault(line, names)
+        if isinstance(fault, Move):
+            self.stage.move(self._move_rng, fault.instance, fault.furniture)
+            self._observer.look_at(self.home)
+            return True
+        if isinstance(fault, Clear):
+            self.faults.clear()
+        else:
+            self.faults.start(fault, self.now_ns)
+        return False
+
+    # Time.
 
     def step(self) -> Due:
         """Let one period pass, and tell which sensors are due."""
-        if self.follower.goal is not None:
+        self._close_doors()
+        before = self.drive.pose
+        if self.follower.busy:
             wanted = self.follower.wanted(self.period_s)
+        elif self.actions.busy:
+            wanted = self.actions.wanted(self.period_s)
         else:
             age_s = (self._steps - self._command_step) * self.period_s
             wanted = self._command if age_s < self.parameters.watchdog_s else STANDSTILL
-        self.drive.step(wanted, self.period_s)
+        self.drive.step(wanted, self.period_s, self.faults.slip(self.now_ns))
+        self._wheels.update(before, self.drive.pose, self.drive.velocity, self.period_s)
+        pressed = self.bumper.update(self.drive.blocked, self.period_s)
         self._steps += 1
         return Due(
-            odom=self._is_due(self.parameters.odom_hz),
-            scan=self._is_due(self.parameters.scan_hz),
+            odom=self._is_due(self.parameters.odom_hz) and not self._is_silent(Sensor.ODOM),
+            scan=self._is_due(self.parameters.scan_hz) and not self._is_silent(Sensor.SCAN),
             camera=self._is_due(self.parameters.camera_hz),
+            bumper=pressed,
         )
 
+    # What the robot senses.
+
     def odometry(self) -> Odometry:
-        """Pose in `odom`, which is `map`: this odometry does not drift."""
+        """Pose in `odom`; without drift that is the pose in `map`, and said to be."""
+        twist = self._wheels.twist if self._drifts else self.drive.velocity
         return Odometry(
-            pose=self.drive.pose,
-            linear_m_s=self.drive.velocity.linear_m_s,
-            angular_rad_s=self.drive.velocity.angular_rad_s,
+            pose=self._pose_in_odom() if self._drifts else self.drive.pose,
+            linear_m_s=twist.linear_m_s,
+            angular_rad_s=twist.angular_rad_s,
             stamp_ns=self.now_ns,
-            frame_id=ODOM_FRAME,
+            frame_id=ODOM_FRAME if self._drifts else MAP_FRAME,
             child_frame_id=BASE_FRAME,
         )
+
+    def odom_from_base(self) -> Pose2D:
+        """Where the wheels take the robot to be; frame `odom` lies on `map` as the run begins."""
+        return self._pose_in_odom() if self._drifts else self.drive.pose
+
+    def map_from_odom(self) -> Pose2D:
+        """The correction that a localiser would publish."""
+        return composed(self.drive.pose, inverse(self.odom_from_base()))
 
     def laser_scan(self) -> LaserScan:
         """The laser scan now."""
         return self._laser.take(self.drive.pose, self.now_ns)
 
-    def camera_model(self) -> CameraModel:
-        """The camera's model, stamped now."""
-        return replace(self._camera.model, stamp_ns=self.now_ns)
+    def shoot(self, wanted: Wanted) -> None:
+        """Open the shutter; the picture comes with `shots`, at once unless pictures are late."""
+        number = int(self._steps * self.parameters.camera_hz / self.parameters.control_hz + 1e-9)
+        self._driver.shoot(
+            number,
+            self.drive.pose,
+            self.drive.velocity,
+            self.now_ns,
+            wanted,
+            frozen=self.faults.is_frozen(Sensor.CAMERA, self.now_ns),
+        )
 
-    def camera_frame(self) -> CameraFrame:
-        """The camera's picture now: the costly one of the sensors."""
-        return self._camera.take(self.drive.pose, self.now_ns)
-
-    def visible_objects(self) -> VisibleObjects:
-        """What the camera's picture shows now, without rendering it."""
-        return self._observer.look(self.drive.pose, self.now_ns)
+    def shots(self) -> list[Shot]:
+        """The pictures that have arrived since the last call; a silent sensor's part is missing."""
+        arrived = self._driver.arrived(self.now_ns)
+        silent = {sensor for sensor in (Sensor.CAMERA, Sensor.DEPTH) if self._is_silent(sensor)}
+        return [shot.without(color=Sensor.CAMERA in silent, depth=Sensor.DEPTH in silent) for shot in arrived]
 
     def episode(self) -> Episode:
         """What decided this run."""
-        start = self.home.start
         return Episode(
-            seed=self.home.seed,
+            seed=self.parameters.seed,
             home=self.home.name,
             rooms=tuple(room.name for room in self.home.rooms),
-            start_x_m=start.x_m,
-            start_y_m=start.y_m,
-            start_yaw_rad=start.yaw_rad,
+            start_x_m=self._start.x_m,
+            start_y_m=self._start.y_m,
+            start_yaw_rad=self._start.yaw_rad,
         )
+
+    def _pose_in_odom(self) -> Pose2D:
+        return composed(self._start, self._wheels.pose)
+
+    def _planner(self) -> RoutePlanner:
+        return RoutePlanner(self.stage.obstacles, self.stage.grid, self.drive.keep_m)
+
+    def _close_doors(self) -> None:
+        """Let the doors be as the faults want them; a door in which the robot stands waits until it is out."""
+        pairs = self.faults.blocked_doors(self.now_ns)
+        doors = tuple(door for door in self.home.doors if door.rooms in pairs)
+        if doors == self.stage.closed:
+            return
+        before = self.stage.closed
+        self.stage.close_doors(doors)
+        try:
+            self.drive.replace_obstacles(self.stage.obstacles)
+        except BadMessageError:
+            self.stage.close_doors(before)
+            return
+        self.follower.replan(self._planner())
+        self._camera.scenery = self.stage.scenery
+
+    def _is_silent(self, sensor: Sensor) -> bool:
+        return self.faults.is_silent(sensor, self.now_ns)
 
     def _is_due(self, rate_hz: float) -> bool:
         """Whether the last step crossed a multiple of the sensor's period."""
         ratio = min(1.0, rate_hz / self.parameters.control_hz)
         return int(self._steps * ratio + 1e-9) > int((self._steps - 1) * ratio + 1e-9)
+
+
+def _home(parameters: SimParameters) -> Home:
+    if parameters.scene:
+        scene = read_scene(
+            Path(parameters.scene).expanduser(), default_style=default_style, default_look=default_look
+        )
+        return build_home(scene)
+    return generate_home(
+        parameters.seed,
+        difficulty=Difficulty(parameters.difficulty),
+        rooms=parameters.rooms or None,
+        objects=parameters.objects or None,
+        look_alikes=parameters.look_alikes,
+    )
+
+
+def _stream(parameters: SimParameters, number: int) -> np.random.Generator:
+    return np.random.default_rng([parameters.seed, number])

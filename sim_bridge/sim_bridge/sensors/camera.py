@@ -53,13 +53,16 @@ def map_from_optical(mount: CameraMount, pose: Pose2D, points_m: Float64) -> Flo
 
 
 class Camera:
-    """Takes pictures of one scenery, from the robot. Same thread as whoever moves things in it."""
+    """Takes pictures of a scenery, from the robot. Same thread as whoever moves things in it.
+
+    `scenery` can be replaced by another one.
+    """
 
     def __init__(self, scenery: Scenery, model: CameraModel, mount: CameraMount, range_m: float) -> None:
         self.model = model
         self.mount = mount
         self.range_m = range_m
-        self._scenery = scenery
+        self.scenery = scenery
 
     def take(self, pose: Pose2D, stamp_ns: int, color: bool = True) -> CameraFrame:
         """What the robot sees from `pose`: some 4 ms at 320 x 240, 1 ms without `color`.
@@ -68,7 +71,7 @@ class Camera:
         """
         axes = map_from_optical(self.mount, pose, np.concatenate([np.zeros((1, 3)), np.eye(3)]))
         return _rendered(
-            self._scenery, self.model, axes[1:] - axes[0], axes[0], self.range_m, stamp_ns, color=color
+            self.scenery, self.model, axes[1:] - axes[0], axes[0], self.range_m, stamp_ns, color=color
         )
 
 

@@ -28,10 +28,12 @@ class ImageDegradation:
         0.0, "the shutter is open this long: motion smears", unit="s", low=0.0, high=0.1
     )
     darkness: float = parameter(0.0, "light that is missing; 1: pitch dark", low=0.0, high=1.0)
-    noise: float = parameter(
+    image_noise: float = parameter(
         0.0, "std of the sensor's noise before its gain, in 8-bit levels", low=0.0, high=30.0
     )
-    downscale: int = parameter(1, "the picture is sharp for this many times fewer pixels", low=1, high=16)
+    image_downscale: int = parameter(
+        1, "the picture is sharp for this many times fewer pixels", low=1, high=16
+    )
     depth_noise: float = parameter(
         0.0, "std of depth at 1 m; it grows with the square of depth", unit="1/m", low=0.0, high=0.02
     )
@@ -49,9 +51,11 @@ DEGRADATIONS: Mapping[str, ImageDegradation] = MappingProxyType(
     {
         "none": ImageDegradation(),
         "blur": ImageDegradation(exposure_s=0.03),
-        "dark": ImageDegradation(darkness=0.8, noise=1.0),
-        "noise": ImageDegradation(noise=8.0, depth_noise=KINECT_NOISE_PER_M, depth_step=KINECT_STEP_PER_M),
-        "half resolution": ImageDegradation(downscale=2),
+        "dark": ImageDegradation(darkness=0.8, image_noise=1.0),
+        "noise": ImageDegradation(
+            image_noise=8.0, depth_noise=KINECT_NOISE_PER_M, depth_step=KINECT_STEP_PER_M
+        ),
+        "half resolution": ImageDegradation(image_downscale=2),
         "holes": ImageDegradation(depth_holes=0.2),
     }
 )

@@ -10,7 +10,7 @@ With S the perfect picture's level (0..255, taken as proportional to light, as t
 
 The factor 1 - g leaves out the photon noise of full light, so that a darkness of 0 with a noise of 0 changes
 nothing. Up to a darkness of 1 - 1 / sqrt(MAX_GAIN) = 0.65 the picture is as bright as before and grainier;
-beyond, it gets darker. With a `downscale`, all of this happens in the small picture's pixels.
+beyond, it gets darker. With a `image_downscale`, all of this happens in the small picture's pixels.
 """
 
 import numpy as np
@@ -48,7 +48,7 @@ def noise_levels(degradation: ImageDegradation, levels: Float32) -> Float32:
     """Standard deviation, from frame to frame, in the picture where the perfect one has `levels`."""
     light = light_left(degradation.darkness)
     photons = WHITE_LEVEL / FULL_WELL_E * light * (1.0 - light) * levels
-    return np.asarray(auto_gain(degradation.darkness) * np.sqrt(photons + degradation.noise**2))
+    return np.asarray(auto_gain(degradation.darkness) * np.sqrt(photons + degradation.image_noise**2))
 
 
 class ImageSensor:
@@ -56,10 +56,10 @@ class ImageSensor:
 
     def __init__(self, degradation: ImageDegradation, model: CameraModel, seed: int) -> None:
         self._seed = seed
-        self._is_noisy = degradation.darkness > 0.0 or degradation.noise > 0.0
+        self._is_noisy = degradation.darkness > 0.0 or degradation.image_noise > 0.0
         self._resolution = (
-            Resolution(model.height, model.width, CHANNELS, degradation.downscale)
-            if degradation.downscale > 1
+            Resolution(model.height, model.width, CHANNELS, degradation.image_downscale)
+            if degradation.image_downscale > 1
             else None
         )
         gain = auto_gain(degradation.darkness)
@@ -69,7 +69,7 @@ class ImageSensor:
         self._noise_of_level = noise_levels(degradation, every_level).astype(np.float32)
         shape = self._resolution.shape if self._resolution else (model.height, model.width, CHANNELS)
         pattern = normals(frame_rng(seed, NO_FRAME, FIXED_STREAM), shape)
-        self._pattern = pattern * np.float32(gain * degradation.noise * FIXED_SHARE)
+        self._pattern = pattern * np.float32(gain * degradation.image_noise * FIXED_SHARE)
 
     def sensed(self, image: ColorImage, frame: int) -> ColorImage:
         """The image of frame number `frame` as this sensor has it: same size, stamp and frame id."""

@@ -42,10 +42,14 @@ class Observer:
         self, world: World, home: Home, model: CameraModel, mount: CameraMount, range_m: float
     ) -> None:
         self._world = world
-        self._home = home
         self._model = model
         self._mount = mount
         self._range_m = range_m
+        self.look_at(home)
+
+    def look_at(self, home: Home) -> None:
+        """Objects are where this home has them."""
+        self._home = home
         self._corners = {thing.instance: thing.corners_m() for thing in home.objects}
         self._centres = np.array([thing.centre_m for thing in home.objects]).reshape(-1, 3)
         self._label = {label: number for number, label in enumerate(home.labels)}

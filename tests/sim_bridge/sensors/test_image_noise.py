@@ -9,7 +9,7 @@ from sim_bridge.sensors.degradations import DEGRADATIONS, ImageDegradation
 from sim_bridge.sensors.image_noise import FIXED_SHARE, ImageSensor
 
 SIZES = [(1, 1), (33, 17), (240, 320)]
-HARD = ImageDegradation(darkness=0.7, noise=5.0, downscale=2)
+HARD = ImageDegradation(darkness=0.7, image_noise=5.0, image_downscale=2)
 
 
 def grey(level: int, height: int = 120, width: int = 160) -> ColorImage:
@@ -59,8 +59,8 @@ def test_a_frame_is_the_same_whenever_it_is_taken() -> None:
 
 @pytest.mark.parametrize("noise", [1.0, 4.0, 12.0])
 @pytest.mark.parametrize("level", [90, 128, 180])
-def test_noise_has_the_asked_for_spread_and_no_bias(level: int, noise: float) -> None:
-    sensor = ImageSensor(ImageDegradation(noise=noise), camera_model(160, 120, 1.0), seed=2)
+def test_noise_has_the_asked_for_spread_and_no_bias(level: int, image_noise: float) -> None:
+    sensor = ImageSensor(ImageDegradation(image_noise=noise), camera_model(160, 120, 1.0), seed=2)
     now, later = (sensor.sensed(grey(level), frame).pixels.astype(float) for frame in (0, 1))
     # The fixed pattern is in both, so the difference has the rest twice; rounding adds 1/12.
     from_frame_to_frame = (now - later).std() / np.sqrt(2.0)
@@ -70,7 +70,7 @@ def test_noise_has_the_asked_for_spread_and_no_bias(level: int, noise: float) ->
 
 
 def test_the_fixed_pattern_outlasts_an_average_over_frames() -> None:
-    sensor = ImageSensor(ImageDegradation(noise=8.0), camera_model(160, 120, 1.0), seed=2)
+    sensor = ImageSensor(ImageDegradation(image_noise=8.0), camera_model(160, 120, 1.0), seed=2)
     frames = 40
     mean = np.mean([sensor.sensed(grey(128), frame).pixels for frame in range(frames)], axis=0)
     expected = np.hypot(8.0 * FIXED_SHARE, np.sqrt((8.0**2 + 1.0 / 12.0) / frames))
@@ -93,7 +93,7 @@ def test_dark_pictures_are_dark_and_grainy(darkness: float, mean: float, std: fl
 def test_the_darker_it_is_the_more_grain_there_is_in_what_is_left() -> None:
     grain = []
     for darkness in np.linspace(0.0, 0.9, 10):
-        found = sensed(grey(120), ImageDegradation(darkness=float(darkness), noise=0.5)).astype(float)
+        found = sensed(grey(120), ImageDegradation(darkness=float(darkness), image_noise=0.5)).astype(float)
         grain.append(found.std() / found.mean())
     assert grain == sorted(grain)
 
@@ -101,13 +101,13 @@ def test_the_darker_it_is_the_more_grain_there_is_in_what_is_left() -> None:
 def test_a_gain_makes_sensor_noise_louder() -> None:
     """Darkness 0.5: g = 0.25, A = 4, so that noise of 2 levels is one of 8, besides the photons' 4.95."""
     model = camera_model(160, 120, 1.0)
-    sensor = ImageSensor(ImageDegradation(darkness=0.5, noise=2.0), model, seed=1)
+    sensor = ImageSensor(ImageDegradation(darkness=0.5, image_noise=2.0), model, seed=1)
     now, later = (sensor.sensed(grey(128), frame).pixels.astype(float) for frame in (0, 1))
     assert (now - later).std() / np.sqrt(2.0) == pytest.approx(np.hypot(8.0, 4.948), rel=0.02)
 
 
 def test_black_and_white_clip_and_do_not_wrap() -> None:
-    loud = ImageDegradation(noise=30.0)
+    loud = ImageDegradation(image_noise=30.0)
     assert np.median(sensed(grey(255), loud)) > 220
     assert np.median(sensed(grey(0), loud)) < 35
 
@@ -115,6 +115,6 @@ def test_black_and_white_clip_and_do_not_wrap() -> None:
 @pytest.mark.parametrize("factor", [2, 5, 16])
 def test_lower_resolution_keeps_brightness_and_loses_detail(factor: int) -> None:
     image = random_image(120, 160)
-    found = sensed(image, ImageDegradation(downscale=factor)).astype(float)
+    found = sensed(image, ImageDegradation(image_downscale=factor)).astype(float)
     assert found.mean() == pytest.approx(image.pixels.mean(), abs=1.0)
     assert found.std() < 0.6 * image.pixels.std()

@@ -1,8 +1,6 @@
 """Things that were moved into a home and that no map knows: they hide objects, and stand in the way."""
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -11,10 +9,10 @@ from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
 from sim_bridge.homes.home import Door, Furniture, Home, Room
 from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.occluders.designs import DESIGNS, pick
 from sim_bridge.homes.rect import Rect
+from sim_bridge.homes.scene import Style
 from sim_bridge.homes.scene_check import REACH_M
-from sim_bridge.homes.shapes import Part
-from sim_bridge.occluder_designs import DESIGNS, pick
 
 # How many of them stand between the middle of a room and what carries objects; the others stand anywhere.
 P_HIDES = 0.8
@@ -29,42 +27,16 @@ START_FREE_M = 0.50
 DOOR_FREE_M = 0.50
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Occluder:
-    """One thing on the floor. Its frame is a piece of furniture's: x out of its front, y to its left.
-
-    `parts` lie within depth x width x height, from the floor up.
-    """
-
-    name: str
-    kind: str
-    x_m: float
-    y_m: float
-    quarter_turns: int
-    depth_m: float
-    width_m: float
-    height_m: float
-    parts: tuple[Part, ...]
-
-    @property
-    def yaw_rad(self) -> float:
-        """Heading of its front."""
-        return math.remainder(self.quarter_turns * math.pi / 2.0, math.tau)
-
-    @property
-    def footprint(self) -> Rect:
-        """The floor that it covers, in `map`."""
-        return _footprint(self.x_m, self.y_m, self.quarter_turns, self.depth_m, self.width_m)
-
-
-def place_occluders(rng: np.random.Generator, home: Home, count: int) -> tuple[Occluder, ...]:
+def place_occluders(rng: np.random.Generator, home: Home, count: int) -> tuple[Furniture, ...]:
     """Move `count` things into the home; fewer where no more find a place.
+
+    They are like furniture on which nothing stands, and they are not in the home's list.
 
     They stand on free floor, away from the start and from doorways; the floor stays in one piece for robots
     of all PASSAGE_RADII_M, and what carries objects can still be approached.
     """
     floor = _Floor(home)
-    placed: list[Occluder] = []
+    placed: list[Furniture] = []
     for _ in range(count):
         design = pick(rng, DESIGNS)(rng)
         hides = rng.random() < P_HIDES
@@ -75,9 +47,17 @@ def place_occluders(rng: np.random.Generator, home: Home, count: int) -> tuple[O
                 continue
             number = sum(other.kind == design.kind for other in placed) + 1
             placed.append(
-                Occluder(
+                Furniture(
                     name=f"{design.kind} {number}",
                     kind=design.kind,
+                    room=next(room.name for room in home.rooms if room.inside.contains(spot)),
+                    style=Style(
+                        width_m=design.size_m[1],
+                        main=design.parts[0].material,
+                        accent=design.parts[-1].material,
+                    ),
+                    tall=True,
+                    surfaces=(),
                     x_m=x_m,
                     y_m=y_m,
                     quarter_turns=turns,
@@ -126,10 +106,8 @@ class _Floor:
 
 def _is_approached(grid: ClearanceGrid, piece: Furniture) -> bool:
     """Whether the widest robot can stand near the piece."""
-    near = piece.footprint.grown(REACH_M)
-    rows = (grid.y_m >= near.y_min_m) & (grid.y_m <= near.y_max_m)
-    columns = (grid.x_m >= near.x_min_m) & (grid.x_m <= near.x_max_m)
-    return bool((grid.cells_m[rows][:, columns] >= max(PASSAGE_RADII_M)).any())
+    near = grid.cells_m[grid.cells_in(piece.footprint.grown(REACH_M))]
+    return bool((near >= max(PASSAGE_RADII_M)).any())
 
 
 def _doorway(door: Door) -> Rect:

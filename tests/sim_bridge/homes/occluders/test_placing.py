@@ -7,21 +7,21 @@ from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
 from sim_bridge.homes.home import Home
 from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
+from sim_bridge.homes.occluders.designs import DESIGNS
+from sim_bridge.homes.occluders.placing import START_FREE_M, place_occluders
 from sim_bridge.homes.rect import Rect
 from sim_bridge.homes.scene_check import REACH_M
 from sim_bridge.homes.shapes import extent
-from sim_bridge.occluder_designs import DESIGNS
-from sim_bridge.occluders import START_FREE_M, Occluder, place_occluders
 
 COUNT = 5
 
 
 @pytest.fixture(scope="module")
-def moved_in(homes: list[Home]) -> list[tuple[Home, tuple[Occluder, ...]]]:
+def moved_in(homes: list[Home]) -> list[tuple[Home, tuple[Furniture, ...]]]:
     return [(home, place_occluders(np.random.default_rng(home.seed), home, COUNT)) for home in homes]
 
 
-Moved = list[tuple[Home, tuple[Occluder, ...]]]
+Moved = list[tuple[Home, tuple[Furniture, ...]]]
 
 
 def test_as_many_as_asked_for_find_a_place(moved_in: Moved, homes: list[Home]) -> None:

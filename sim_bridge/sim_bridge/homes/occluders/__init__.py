@@ -1,0 +1,1 @@
+"""Things moved into a home that no map knows."""
