@@ -120,7 +120,10 @@ class Scenery:
         return {number: number for number in self.items if number < FIRST_OTHER}
 
     def move(self, number: int, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
-        """Put an item elsewhere (`map`). Raises BadSceneError where there is none of that number."""
+        """Put an item elsewhere (`map`); it keeps its lamp, and `items` keeps it as it was given.
+
+        Raises BadSceneError where there is none of that number.
+        """
         if number not in self._row:
             raise BadSceneError(f"nothing in sight has the number {number!r}, so it cannot be moved")
         self.mesh.item_pose[self._row[number]] = (x_m, y_m, z_m, math.cos(yaw_rad), math.sin(yaw_rad))

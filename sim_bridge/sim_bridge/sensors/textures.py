@@ -239,8 +239,8 @@ def albedo(
 ) -> tuple[float, float, float]:
     """Red, green and blue in 0..1 of a surface.
 
-    `look` is the codes of substance and pattern, `colours` are the material's and its pattern's. `place` (m) is
-    (s, t) where the pattern is looked up, from the middle of the part, and (s, t) where the substance is.
+    `look` is the codes of substance and pattern, `colours` are the material's and its pattern's. `place` (m)
+    is (s, t) where the pattern is looked up, from the middle of the part, and (s, t) where the substance is.
     """
     share = pattern_share(look[1], place[0], place[1], period_m, footprint_m)
     tone = _grain(look[0], place[2], place[3], footprint_m) - 1.0
