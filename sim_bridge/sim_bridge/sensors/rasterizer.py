@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.sensors.compiled import compiled
-from sim_bridge.sensors.scenery import Int32, Mesh
+from sim_bridge.sensors.hulls import Int32
+from sim_bridge.sensors.scenery import Mesh
 
 NOTHING = -1
 NEAR_M = 0.05

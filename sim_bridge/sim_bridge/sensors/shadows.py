@@ -10,8 +10,9 @@ import numpy as np
 
 from robustnav_msgs_py.values import Float32
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.hulls import TOP
 from sim_bridge.sensors.rasterizer import NEAR_M, NOTHING, Samples, View
-from sim_bridge.sensors.scenery import TOP, Mesh
+from sim_bridge.sensors.scenery import Mesh
 
 # This share of the light is gone in the middle of a shadow.
 DARKNESS = 0.36

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.hulls import GLOBE, MANTLE
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
-from sim_bridge.sensors.scenery import GLOBE, MANTLE, PATTERN_CODE, SUBSTANCE_CODE, Mesh
+from sim_bridge.sensors.scenery import PATTERN_CODE, SUBSTANCE_CODE, Mesh
 
 # What is seen where there is no surface: a light ceiling.
 BACKGROUND_RGB = (226, 224, 219)
