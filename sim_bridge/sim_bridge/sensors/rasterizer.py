@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.sensors.compiled import compiled
-from sim_bridge.sensors.scenery import Int32, Mesh
+from sim_bridge.sensors.hulls import Int32
+from sim_bridge.sensors.scenery import Mesh
 
 NOTHING = -1
 NEAR_M = 0.05
@@ -65,8 +66,7 @@ def rasterise(mesh: Mesh, view: View) -> Samples:
             continue
         _into_item(mesh, view, item, turn, eye)
         _project(mesh, view, item, turn, eye, points)
-        for at in range(first, last):
-            _draw(mesh, view, at, turn, eye, points, nearness, triangles)
+        _draw(mesh, view, item, turn, eye, points, nearness, triangles)
     return Samples(nearness, triangles)
 
 
@@ -201,47 +201,55 @@ def _project(mesh: Mesh, view: View, item: int, turn: Float64, eye: Float64, poi
 def _draw(
     mesh: Mesh,
     view: View,
-    at: int,
+    item: int,
     turn: Float64,
     eye: Float64,
     points: Float64,
     nearness: Float32,
     triangles: Int32,
 ) -> None:
-    """Draw one triangle, unless it shows its back; the part nearer than NEAR_M is cut off."""
-    a, b, c = mesh.triangle_plane[at, 0], mesh.triangle_plane[at, 1], mesh.triangle_plane[at, 2]
-    height_m = a * eye[0] + b * eye[1] + c * eye[2] - mesh.triangle_plane[at, 3]
-    if height_m <= EDGE_ON_M:
-        return
-    i, j, k = mesh.triangle[at, 0], mesh.triangle[at, 1], mesh.triangle[at, 2]
-    near = int(points[i, 2] < NEAR_M) + int(points[j, 2] < NEAR_M) + int(points[k, 2] < NEAR_M)
-    if near == 3:
-        return
-    # On the plane of the triangle, 1 / depth is linear in u and v.
-    scale = -1.0 / height_m
-    du = (turn[0, 0] * a + turn[0, 1] * b + turn[0, 2] * c) * scale / view.fx
-    dv = (turn[1, 0] * a + turn[1, 1] * b + turn[1, 2] * c) * scale / view.fy
-    at_zero = (turn[2, 0] * a + turn[2, 1] * b + turn[2, 2] * c) * scale - du * view.cx - dv * view.cy
-    plane = (at_zero, du, dv)
-    if near == 0:
-        ends = (points[i, 3], points[i, 4], points[j, 3], points[j, 4], points[k, 3], points[k, 4])
-        _fill(ends, plane, at, nearness, triangles)
-        return
-    # Turn the corners so that the first is the odd one out: the only near one, or the only far one.
-    odd_is_near = near == 1
-    while (points[i, 2] < NEAR_M) != odd_is_near:
-        i, j, k = j, k, i
-    if odd_is_near:
-        uj, vj = _cut(view, points, j, i)
-        uk, vk = _cut(view, points, k, i)
-        _fill(
-            (uj, vj, points[j, 3], points[j, 4], points[k, 3], points[k, 4]), plane, at, nearness, triangles
-        )
-        _fill((uj, vj, points[k, 3], points[k, 4], uk, vk), plane, at, nearness, triangles)
-    else:
-        uj, vj = _cut(view, points, i, j)
-        uk, vk = _cut(view, points, i, k)
-        _fill((points[i, 3], points[i, 4], uj, vj, uk, vk), plane, at, nearness, triangles)
+    """Draw the triangles of an item that show their fronts; what is nearer than NEAR_M is cut off.
+
+    One call for all of them: each call would count references to every array of the mesh.
+    """
+    for at in range(mesh.item_triangles[item], mesh.item_triangles[item + 1]):
+        a, b, c = mesh.triangle_plane[at, 0], mesh.triangle_plane[at, 1], mesh.triangle_plane[at, 2]
+        height_m = a * eye[0] + b * eye[1] + c * eye[2] - mesh.triangle_plane[at, 3]
+        if height_m <= EDGE_ON_M:
+            continue
+        i, j, k = mesh.triangle[at, 0], mesh.triangle[at, 1], mesh.triangle[at, 2]
+        near = int(points[i, 2] < NEAR_M) + int(points[j, 2] < NEAR_M) + int(points[k, 2] < NEAR_M)
+        if near == 3:
+            continue
+        # On the plane of the triangle, 1 / depth is linear in u and v.
+        scale = -1.0 / height_m
+        du = (turn[0, 0] * a + turn[0, 1] * b + turn[0, 2] * c) * scale / view.fx
+        dv = (turn[1, 0] * a + turn[1, 1] * b + turn[1, 2] * c) * scale / view.fy
+        at_zero = (turn[2, 0] * a + turn[2, 1] * b + turn[2, 2] * c) * scale - du * view.cx - dv * view.cy
+        plane = (at_zero, du, dv)
+        if near == 0:
+            ends = (points[i, 3], points[i, 4], points[j, 3], points[j, 4], points[k, 3], points[k, 4])
+            _fill(ends, plane, at, nearness, triangles)
+            continue
+        # Turn the corners so that the first is the odd one out: the only near one, or the only far one.
+        odd_is_near = near == 1
+        while (points[i, 2] < NEAR_M) != odd_is_near:
+            i, j, k = j, k, i
+        if odd_is_near:
+            uj, vj = _cut(view, points, j, i)
+            uk, vk = _cut(view, points, k, i)
+            _fill(
+                (uj, vj, points[j, 3], points[j, 4], points[k, 3], points[k, 4]),
+                plane,
+                at,
+                nearness,
+                triangles,
+            )
+            _fill((uj, vj, points[k, 3], points[k, 4], uk, vk), plane, at, nearness, triangles)
+        else:
+            uj, vj = _cut(view, points, i, j)
+            uk, vk = _cut(view, points, i, k)
+            _fill((points[i, 3], points[i, 4], uj, vj, uk, vk), plane, at, nearness, triangles)
 
 
 @compiled

@@ -7,7 +7,6 @@ of their instance; everything else is numbered from FIRST_OTHER.
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -18,17 +17,14 @@ from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Room, Wall, Window
 from sim_bridge.homes.materials import COLOURS, Colour, Material, Pattern, Substance
 from sim_bridge.homes.rect import Rect, Side
-from sim_bridge.homes.shapes import Axis, Part, Shape, Vector3, box, extent
-
-Int32 = NDArray[np.int32]
+from sim_bridge.homes.shapes import Part, Shape, Vector3, box, extent
+from sim_bridge.sensors.hulls import BOTTOM, EAST, NORTH, SOUTH, WEST, Int32, hull_of
 
 FLOOR_THICKNESS_M = 0.05
 LAMP_HEIGHT_M = 2.3
 # Numbers below this are instances of objects.
 FIRST_OTHER = 1 << 20
 
-# Faces, as the rasteriser numbers them: a flat one looks along an axis of its item, the others are round.
-WEST, EAST, SOUTH, NORTH, BOTTOM, TOP, MANTLE, GLOBE = range(8)
 _FACE_OF_SIDE = {Side.WEST: WEST, Side.EAST: EAST, Side.SOUTH: SOUTH, Side.NORTH: NORTH}
 
 SUBSTANCE_CODE = {substance: code for code, substance in enumerate(Substance)}
@@ -40,9 +36,6 @@ SHORTEST_PERIOD_M = 0.012
 # What is lighter than this gets its pattern in charcoal, all else in cream.
 LIGHT_COLOUR = 0.62
 LUMINANCE = (0.30, 0.59, 0.11)
-
-# Sides of a cylinder, and of a ball around and from pole to pole, up to a diameter.
-_SIDES: tuple[tuple[float, int, int], ...] = ((0.03, 8, 6), (0.10, 14, 8), (0.30, 20, 10), (math.inf, 32, 14))
 
 # How wide the soft border of a shadow is, half of it outside of the thing: more for what is higher.
 SHADOW_PER_HEIGHT, SHORTEST_SHADOW_M, LONGEST_SHADOW_M = 0.5, 0.03, 0.22
@@ -120,7 +113,10 @@ class Scenery:
         return {number: number for number in self.items if number < FIRST_OTHER}
 
     def move(self, number: int, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
-        """Put an item elsewhere (`map`). Raises BadSceneError where there is none of that number."""
+        """Put an item elsewhere (`map`); it keeps its lamp, and `items` keeps it as it was given.
+
+        Raises BadSceneError where there is none of that number.
+        """
         if number not in self._row:
             raise BadSceneError(f"nothing in sight has the number {number!r}, so it cannot be moved")
         self.mesh.item_pose[self._row[number]] = (x_m, y_m, z_m, math.cos(yaw_rad), math.sin(yaw_rad))
@@ -230,14 +226,6 @@ def _gap_m(first: Rect, second: Rect) -> float:
     return math.hypot(dx, dy)
 
 
-class _Hull(NamedTuple):
-    """The triangles of a primitive whose half extents are 1."""
-
-    vertices: Float64  # [n, 3]
-    triangles: Int32  # [m, 3]
-    faces: Int32  # [m]
-
-
 def _mesh(items: tuple[Item, ...]) -> Mesh:
     vertices, triangles, firsts, faces = [], [], [], []
     part_item, part_triangles, looks, colours, frames = [], [], [], [], []
@@ -245,7 +233,7 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
     for row, item in enumerate(items):
         count, triangle_count = 0, 0
         for at, part in enumerate(item.parts):
-            hull = _hull(part)
+            hull = hull_of(part)
             seen = ~np.isin(hull.faces, item.unseen) if item.unseen else slice(None)
             own = hull.triangles[seen]
             vertices.append(hull.vertices * (np.array(part.size_m) / 2.0) + part.centre_m)
@@ -328,86 +316,3 @@ def second_colour(material: Material) -> Colour:
     """The colour of a material's pattern: one that stands out from its own."""
     light = sum(share * channel for share, channel in zip(LUMINANCE, material.rgb, strict=True))
     return COLOURS["charcoal" if light > LIGHT_COLOUR else "cream"]
-
-
-def _hull(part: Part) -> _Hull:
-    if part.shape is Shape.BOX:
-        return _box_hull()
-    around, stacks = next(sides for up_to_m, *sides in _SIDES if part.size_m[part.axis.others[0]] <= up_to_m)
-    return _cylinder_hull(around, part.axis) if part.shape is Shape.CYLINDER else _ball_hull(around, stacks)
-
-
-@cache
-def _box_hull() -> _Hull:
-    vertices: list[list[float]] = []
-    triangles: list[tuple[int, int, int]] = []
-    for face in range(6):
-        out = np.zeros(3)
-        out[face // 2] = 2 * (face % 2) - 1
-        # Two edge directions whose cross product points outwards: the corners then run counter-clockwise.
-        first = np.roll(out, 1)
-        second = np.cross(out, first)
-        at = len(vertices)
-        vertices += [(out + a * first + b * second).tolist() for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        triangles += [(at, at + 1, at + 2), (at, at + 2, at + 3)]
-    return _Hull(np.array(vertices), np.array(triangles, dtype=np.int32), np.arange(12, dtype=np.int32) // 2)
-
-
-def _stretched(around: int) -> float:
-    """The radius of a polygon that lies as far out of the circle of radius 1 as it lies inside it."""
-    return 2.0 / (1.0 + math.cos(math.pi / around))
-
-
-@cache
-def _cylinder_hull(around: int, axis: Axis) -> _Hull:
-    angles = np.arange(around) * math.tau / around
-    radius = _stretched(around)
-    ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.ones(around)], axis=1)
-    upright = np.concatenate([ring * (1.0, 1.0, -1.0), ring])
-    here = np.arange(around)
-    there = (here + 1) % around
-    fan = np.stack([np.zeros(around - 2, dtype=int), here[1:-1], there[1:-1]], axis=1)
-    triangles = np.concatenate(
-        [
-            np.stack([here, there, there + around], axis=1),
-            np.stack([here, there + around, here + around], axis=1),
-            fan[:, ::-1],
-            fan + around,
-        ]
-    )
-    faces = np.repeat([MANTLE, 2 * axis, 2 * axis + 1], [2 * around, around - 2, around - 2])
-    # Rolling the axes x, y, z on by one or two keeps the corners counter-clockwise.
-    return _Hull(np.roll(upright, axis + 1, axis=1), triangles.astype(np.int32), faces.astype(np.int32))
-
-
-@cache
-def _ball_hull(around: int, stacks: int) -> _Hull:
-    angles = np.arange(around) * math.tau / around
-    heights = np.arange(1, stacks) * math.pi / stacks
-    radius = _stretched(around)
-    rings = [
-        np.stack(
-            [
-                radius * math.sin(height) * np.cos(angles),
-                radius * math.sin(height) * np.sin(angles),
-                np.full(around, -radius * math.cos(height)),
-            ],
-            axis=1,
-        )
-        for height in heights
-    ]
-    vertices = np.concatenate([*rings, [(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]])
-    south, north = len(vertices) - 2, len(vertices) - 1
-    here = np.arange(around)
-    there = (here + 1) % around
-    triangles = [np.stack([np.full(around, south), there, here], axis=1)]
-    for low in range(0, (stacks - 2) * around, around):
-        high = low + around
-        triangles += [
-            np.stack([here + low, there + low, there + high], axis=1),
-            np.stack([here + low, there + high, here + high], axis=1),
-        ]
-    last = (stacks - 2) * around
-    triangles.append(np.stack([here + last, there + last, np.full(around, north)], axis=1))
-    corners = np.concatenate(triangles).astype(np.int32)
-    return _Hull(vertices, corners, np.full(len(corners), GLOBE, dtype=np.int32))

@@ -10,8 +10,9 @@ import numpy as np
 
 from robustnav_msgs_py.values import Float32
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.hulls import TOP
 from sim_bridge.sensors.rasterizer import NEAR_M, NOTHING, Samples, View
-from sim_bridge.sensors.scenery import TOP, Mesh
+from sim_bridge.sensors.scenery import Mesh
 
 # This share of the light is gone in the middle of a shadow.
 DARKNESS = 0.36
@@ -39,28 +40,33 @@ def _darken(mesh: Mesh, view: View, samples: Samples, item: int, shares: Float32
     if eye[2] <= base:
         return
     u_low, v_low, u_high, v_high = 1e9, 1e9, -1e9, -1e9
-    behind = 0
-    for corner in range(4):
-        a = x_mid + (x_half + reach) * (1.0 if corner % 2 else -1.0)
-        b = y_mid + (y_half + reach) * (1.0 if corner // 2 else -1.0)
+    # Around the corners of the shadow, from the last to the first and on; what is too near is cut off.
+    x_from, y_from, z_from = 0.0, 0.0, 0.0
+    for corner in range(5):
+        a = x_mid + (x_half + reach) * (1.0 if corner % 4 in (0, 3) else -1.0)
+        b = y_mid + (y_half + reach) * (1.0 if corner % 4 in (0, 1) else -1.0)
         dx = x + cos * a - sin * b - eye[0]
         dy = y + sin * a + cos * b - eye[1]
         dz = base - eye[2]
-        ahead = turn[2, 0] * dx + turn[2, 1] * dy + turn[2, 2] * dz
-        if ahead < NEAR_M:
-            behind += 1
-            continue
-        u = view.cx + view.fx * (turn[0, 0] * dx + turn[0, 1] * dy + turn[0, 2] * dz) / ahead
-        v = view.cy + view.fy * (turn[1, 0] * dx + turn[1, 1] * dy + turn[1, 2] * dz) / ahead
-        u_low, u_high = min(u_low, u), max(u_high, u)
-        v_low, v_high = min(v_low, v), max(v_high, v)
-    if behind == 4:
-        return
-    if behind > 0:
-        # A shadow that reaches under the camera may be anywhere in the picture.
-        u_low, v_low, u_high, v_high = 0.0, 0.0, float(view.width), float(view.height)
-    left, right = int(max(0.0, u_low)), int(min(view.width - 1.0, u_high)) + 1
-    first, last = int(max(0.0, v_low)), int(min(view.height - 1.0, v_high)) + 1
+        x_to = turn[0, 0] * dx + turn[0, 1] * dy + turn[0, 2] * dz
+        y_to = turn[1, 0] * dx + turn[1, 1] * dy + turn[1, 2] * dz
+        z_to = turn[2, 0] * dx + turn[2, 1] * dy + turn[2, 2] * dz
+        for end in range(2):
+            x_at, y_at, z_at = x_to, y_to, z_to
+            if end == 0:
+                if corner == 0 or (z_from < NEAR_M) == (z_to < NEAR_M):
+                    continue
+                share = (NEAR_M - z_from) / (z_to - z_from)
+                x_at, y_at = x_from + share * (x_to - x_from), y_from + share * (y_to - y_from)
+                z_at = NEAR_M
+            elif z_to < NEAR_M:
+                continue
+            u, v = view.cx + view.fx * x_at / z_at, view.cy + view.fy * y_at / z_at
+            u_low, u_high = min(u_low, u), max(u_high, u)
+            v_low, v_high = min(v_low, v), max(v_high, v)
+        x_from, y_from, z_from = x_to, y_to, z_to
+    left, right = int(max(0.0, u_low)), int(max(-1.0, min(view.width - 1.0, u_high))) + 1
+    first, last = int(max(0.0, v_low)), int(max(-1.0, min(view.height - 1.0, v_high))) + 1
     for v in range(first, last):
         y_ray = (v - view.cy) / view.fy
         for u in range(left, right):

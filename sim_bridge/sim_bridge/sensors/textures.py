@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.hulls import GLOBE, MANTLE
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
-from sim_bridge.sensors.scenery import GLOBE, MANTLE, PATTERN_CODE, SUBSTANCE_CODE, Mesh
+from sim_bridge.sensors.scenery import PATTERN_CODE, SUBSTANCE_CODE, Mesh
 
 # What is seen where there is no surface: a light ceiling.
 BACKGROUND_RGB = (226, 224, 219)
@@ -239,8 +240,8 @@ def albedo(
 ) -> tuple[float, float, float]:
     """Red, green and blue in 0..1 of a surface.
 
-    `look` is the codes of substance and pattern, `colours` are the material's and
-    its pattern's. `place` is (s, t) where the pattern is looked up and (s, t) where the substance is.
+    `look` is the codes of substance and pattern, `colours` are the material's and its pattern's. `place` (m)
+    is (s, t) where the pattern is looked up, from the middle of the part, and (s, t) where the substance is.
     """
     share = pattern_share(look[1], place[0], place[1], period_m, footprint_m)
     tone = _grain(look[0], place[2], place[3], footprint_m) - 1.0

@@ -9,7 +9,8 @@ from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.home import Home
 from sim_bridge.homes.materials import material
 from sim_bridge.homes.shapes import Axis, Part, ball, box, cylinder
-from sim_bridge.sensors.scenery import FIRST_OTHER, GLOBE, MANTLE, Item, Scenery, scenery_of, second_colour
+from sim_bridge.sensors.hulls import GLOBE, MANTLE
+from sim_bridge.sensors.scenery import FIRST_OTHER, Item, Scenery, scenery_of, second_colour
 
 PAINT = material("red paint")
 PARTS = [

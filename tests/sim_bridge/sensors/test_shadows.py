@@ -6,7 +6,8 @@ import pytest
 from sim_bridge.homes.materials import material
 from sim_bridge.homes.shapes import box
 from sim_bridge.sensors.camera import camera_model, look_at
-from sim_bridge.sensors.scenery import BOTTOM, Item, Scenery
+from sim_bridge.sensors.hulls import BOTTOM
+from sim_bridge.sensors.scenery import Item, Scenery
 
 LAMP_M = (0.0, 0.0, 2.3)
 WHITE = material("white ceramic")
