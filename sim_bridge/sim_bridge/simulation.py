@@ -291,7 +291,7 @@ class Simulation:
         return RoutePlanner(self.stage.obstacles, self.stage.grid, self.drive.keep_m)
 
     def _close_doors(self) -> None:
-        """Let the doors be as the faults want them; a door in which the robot stands waits until it is out."""
+        """Let the doors be as the faults want them; one where the robot stands waits for it to leave."""
         pairs = self.faults.blocked_doors(self.now_ns)
         doors = tuple(door for door in self.home.doors if door.rooms in pairs)
         if doors == self.stage.closed:

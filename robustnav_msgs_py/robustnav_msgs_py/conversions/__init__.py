@@ -21,6 +21,7 @@ from robustnav_msgs_py.conversions.clouds import (
     visible_from_message,
     visible_to_message,
 )
+from robustnav_msgs_py.conversions.flags import flag_from_message, flag_to_message
 from robustnav_msgs_py.conversions.grids import map_from_message, map_to_message
 from robustnav_msgs_py.conversions.markers import (
     detections_to_markers,
@@ -84,6 +85,8 @@ __all__ = [
     "detections_from_message",
     "detections_to_markers",
     "detections_to_message",
+    "flag_from_message",
+    "flag_to_message",
     "labels_from_message",
     "labels_to_message",
     "map_from_message",

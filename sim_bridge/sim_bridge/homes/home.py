@@ -5,6 +5,7 @@ its footprint is one. Everything is frozen: a home does not change once it is ma
 """
 
 import math
+import re
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -23,6 +24,8 @@ DOOR_HEIGHT_M = 2.05
 ROBOT_HEIGHT_M = 1.30
 # Narrower than this is a matter of rounding.
 SLIVER_M = 1e-6
+# Furniture is called by its kind and a number.
+NUMBER = re.compile(r" \d+$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,6 +206,20 @@ class SmallObject:
             ]
         )
 
+    @property
+    def attributes(self) -> tuple[tuple[str, str], ...]:
+        """What can be said of it: class, colour, material, pattern, size, on (furniture, no number), room."""
+        look = self.look
+        return (
+            ("class", self.label),
+            ("colour", look.colour),
+            ("material", str(look.substance)),
+            ("pattern", str(look.pattern)),
+            ("size", str(look.size)),
+            ("on", NUMBER.sub("", self.furniture)),
+            ("room", self.room),
+        )
+
     def as_truth(self) -> ObjectInstance:
         """The object as ground truth travels."""
         x, y, z = self.centre_m
@@ -214,6 +231,7 @@ class SmallObject:
             z_m=z,
             yaw_rad=self.yaw_rad,
             size_m=self.size_m,
+            attributes=self.attributes,
         )
 
 

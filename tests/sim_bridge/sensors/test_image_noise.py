@@ -59,7 +59,7 @@ def test_a_frame_is_the_same_whenever_it_is_taken() -> None:
 
 @pytest.mark.parametrize("noise", [1.0, 4.0, 12.0])
 @pytest.mark.parametrize("level", [90, 128, 180])
-def test_noise_has_the_asked_for_spread_and_no_bias(level: int, image_noise: float) -> None:
+def test_noise_has_the_asked_for_spread_and_no_bias(level: int, noise: float) -> None:
     sensor = ImageSensor(ImageDegradation(image_noise=noise), camera_model(160, 120, 1.0), seed=2)
     now, later = (sensor.sensed(grey(level), frame).pixels.astype(float) for frame in (0, 1))
     # The fixed pattern is in both, so the difference has the rest twice; rounding adds 1/12.

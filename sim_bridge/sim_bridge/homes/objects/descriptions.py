@@ -1,10 +1,9 @@
 """What a person calls an object, so that no other object is meant."""
 
 import itertools
-import re
 from collections.abc import Sequence
 
-from sim_bridge.homes.home import SmallObject
+from sim_bridge.homes.home import NUMBER, SmallObject
 from sim_bridge.homes.materials import Substance
 from sim_bridge.homes.objects.catalogue import CLASSES
 from sim_bridge.homes.scene import Size
@@ -15,21 +14,6 @@ TELLING = ("colour", "pattern", "material", "size", "on", "room")
 BEFORE_THE_NOUN = ("size", "colour", "pattern", "material")
 ADJECTIVES: dict[str, str] = {Substance.WOOD: "wooden", Size.MEDIUM: "medium-sized"}
 HANGING = frozenset(item.label for item in CLASSES if item.hangs)
-_NUMBER = re.compile(r" \d+$")
-
-
-def attributes(thing: SmallObject) -> tuple[tuple[str, str], ...]:
-    """What can be said of an object: class, colour, material, pattern, size, on (furniture kind), room."""
-    look = thing.look
-    return (
-        ("class", thing.label),
-        ("colour", look.colour),
-        ("material", str(look.substance)),
-        ("pattern", str(look.pattern)),
-        ("size", str(look.size)),
-        ("on", _NUMBER.sub("", thing.furniture)),
-        ("room", thing.room),
-    )
 
 
 def describe(thing: SmallObject, alike: Sequence[SmallObject]) -> str:
@@ -38,9 +22,9 @@ def describe(thing: SmallObject, alike: Sequence[SmallObject]) -> str:
     `alike` may hold the object itself and objects of other classes. Where all attributes together fit another
     too, the furniture is named with its number; then only two equal objects on one piece are called the same.
     """
-    own = dict(attributes(thing))
+    own = dict(thing.attributes)
     others = [
-        dict(attributes(other))
+        dict(other.attributes)
         for other in alike
         if other.label == thing.label and other.instance != thing.instance
     ]
@@ -64,4 +48,4 @@ def _phrase(own: dict[str, str], names: Sequence[str]) -> str:
 
 def _with_article(name: str) -> str:
     """People say "the desk" and "the bedroom", but "bedroom 2"."""
-    return name if _NUMBER.search(name) else f"the {name}"
+    return name if NUMBER.search(name) else f"the {name}"

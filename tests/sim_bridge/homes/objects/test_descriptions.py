@@ -6,7 +6,7 @@ import pytest
 from sim_bridge.homes.home import SmallObject
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.homes.objects.catalogue import object_class
-from sim_bridge.homes.objects.descriptions import attributes, describe
+from sim_bridge.homes.objects.descriptions import describe
 from sim_bridge.homes.scene import Look, Size
 
 
@@ -40,7 +40,7 @@ RED = thing(0, "red striped ceramic")
 
 def test_attributes_are_what_a_person_can_say() -> None:
     small = thing(3, "blue plain metal", "dining table 2", "bedroom 2", "bottle", Size.SMALL)
-    assert attributes(small) == (
+    assert small.attributes == (
         ("class", "bottle"),
         ("colour", "blue"),
         ("material", "metal"),

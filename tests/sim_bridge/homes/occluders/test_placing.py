@@ -5,7 +5,7 @@ import pytest
 
 from sim_bridge.homes.floor_plan import RESOLUTION_M
 from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
-from sim_bridge.homes.home import Home
+from sim_bridge.homes.home import Furniture, Home
 from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.occluders.designs import DESIGNS
 from sim_bridge.homes.occluders.placing import START_FREE_M, place_occluders
