@@ -1,11 +1,15 @@
 """`robustnav data`: bring search scenes in from other people's formats, and take them out."""
 
+from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.markup import escape
+
+from robustnav_msgs_py.errors import BadParameterError
 
 if TYPE_CHECKING:  # loads numba, which no other command should wait for
     from robustnav_nodes.benchmarks.search_scene import SearchScene
@@ -17,8 +21,53 @@ data_app.add_typer(import_app, name="import")
 data_app.add_typer(export_app, name="export")
 
 _NAMED = 4  # targets named in a summary
+MAX_SEED = 2**31 - 1
+
+
+class Difficulty(StrEnum):
+    """How large a simulated home is."""
+
+    EASY = "easy"
+    MEDIUM = "medium"
+    HARD = "hard"
+
 
 SceneFile = Annotated[Path, typer.Option("--out", help="scene file to write (.npz); must not exist")]
+
+
+@data_app.command("homes")
+def homes_command(
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="of the first home")] = 1,
+    count: Annotated[int, typer.Option(min=1, max=10_000, help="how many, one seed after the other")] = 1,
+    difficulty: Annotated[Difficulty, typer.Option(help="1 room, 3 to 4, 6 to 10")] = Difficulty.MEDIUM,
+    rooms: Annotated[int | None, typer.Option(min=1, max=10, help="so many rooms instead")] = None,
+    objects: Annotated[int | None, typer.Option(min=4, max=80, help="so many small objects")] = None,
+    look_alikes: Annotated[
+        str, typer.Option(help="a class of which there are several, hard to tell apart")
+    ] = "",
+    out: Annotated[Path | None, typer.Option(help="folder for the scene files and the pictures")] = None,
+    check: Annotated[
+        list[Path] | None, typer.Option(help="instead: a scene file to check (and to draw, with --out)")
+    ] = None,
+) -> None:
+    """Make simulated homes as scene files that can be edited, with pictures; or check one of yours."""
+    from robustnav_nodes.benchmarks.home_files import check_homes, make_homes
+
+    say = partial(Console(highlight=False).print, markup=False, soft_wrap=True)
+    if check:
+        check_homes(check, out, say)
+        return
+    if out is None:
+        raise BadParameterError("--out FOLDER says where the homes go; --check FILE checks one instead")
+    make_homes(
+        range(seed, seed + count),
+        out,
+        say,
+        difficulty=difficulty.value,
+        rooms=rooms,
+        objects=objects,
+        look_alikes=look_alikes,
+    )
 
 
 @import_app.command("pomp")
