@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.home import Home, Room
+from sim_bridge.homes.home import WALL_HEIGHT_M, Home, Room
 from sim_bridge.homes.obstacles import ClearanceGrid
 from sim_bridge.sensors.camera import Camera, camera_model, look_at
 from sim_bridge.sensors.scenery import Scenery, scenery_of
@@ -17,7 +17,7 @@ Pixels = NDArray[np.uint8]
 
 # From so high up that one looks hardly at the walls.
 ABOVE_M = 22.0
-AROUND_M = 0.4
+AROUND_M = 0.15
 VIEW_RAD = math.pi / 3.0
 RANGE_M = 25.0
 # Where the robot stands to look at a room.
@@ -28,10 +28,13 @@ VIEW_GRID = 12
 
 def top_view(home: Home, width_px: int, scenery: Scenery | None = None) -> Pixels:
     """The home from above, north up: uint8 [height, width_px, 3]."""
-    area = home.bounds.grown(AROUND_M)
-    x_m, y_m = area.centre_m
-    height_px = round(width_px * area.depth_m / area.width_m)
-    view_rad = 2.0 * math.atan(area.width_m / 2.0 / ABOVE_M)
+    bounds = home.bounds
+    x_m, y_m = bounds.centre_m
+    # The tops of the walls are nearer, and look larger.
+    nearer = ABOVE_M / (ABOVE_M - WALL_HEIGHT_M)
+    wide_m, deep_m = (length * nearer + 2.0 * AROUND_M for length in (bounds.width_m, bounds.depth_m))
+    height_px = round(width_px * deep_m / wide_m)
+    view_rad = 2.0 * math.atan(wide_m / 2.0 / ABOVE_M)
     model = camera_model(width_px, height_px, view_rad)
     frame = look_at(scenery or scenery_of(home), model, (x_m, y_m, ABOVE_M), (x_m, y_m, 0.0))
     if frame.color is None:

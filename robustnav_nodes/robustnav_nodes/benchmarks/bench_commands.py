@@ -143,6 +143,32 @@ def planner_command(
         draw_planner_rows(rows, plot)
 
 
+@bench_app.command("sim")
+def sim_command(
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="of the first home")] = 1,
+    homes: Annotated[int, typer.Option(min=1, max=1000, help="hard ones, one seed after the other")] = 20,
+    json_file: JsonFile = None,
+) -> None:
+    """How fast the simulator is: pictures, lock-step, building homes, memory; on one core."""
+    from dataclasses import asdict
+
+    from robustnav_nodes.benchmarks.report_file import check_writable, write_report
+    from robustnav_nodes.benchmarks.sim_bench import sim_figures
+
+    check_writable(json_file)
+    figures = sim_figures(range(seed, seed + homes))
+    console = _console()
+    console.print(f"a hard home of {figures.bodies} bodies, one core")
+    console.print(f"RGB-D 320 x 240             {figures.rgbd_320x240_fps:8.0f} pictures/s")
+    console.print(f"RGB-D 640 x 480             {figures.rgbd_640x480_fps:8.0f} pictures/s")
+    console.print(f"depth alone, 320 x 240      {figures.depth_320x240_fps:8.0f} pictures/s")
+    console.print(f"lock-step without camera    {figures.lockstep_realtime_factor:8.0f} x real time")
+    console.print(f"slowest of {homes:3d} homes to build {figures.hard_home_build_s:7.2f} s")
+    console.print(f"most memory                 {figures.rss_mb:8.0f} MB")
+    if json_file is not None:
+        write_report(json_file, "sim", seed=seed, settings={"homes": homes}, **asdict(figures))
+
+
 @bench_app.command("pomdp")
 def pomdp_command(
     simulations: Annotated[int, typer.Option(min=8, max=1_000_000, help="for one decision")] = 4096,
