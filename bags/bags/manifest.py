@@ -50,7 +50,8 @@ class Manifest:
 
     `commit` is the checkout's commit, "" where the code was installed rather than checked out;
     `uncommitted_changes` says that the files differed from it. `sim_start_ns` is the first time on
-    `/clock`. `silent_nodes` were in the graph and did not tell their parameters.
+    `/clock`. `silent_nodes` were in the graph and did not tell their parameters. `redacted` says what was
+    taken out of the bag after the run, before it was shared.
     """
 
     version: str
@@ -64,6 +65,7 @@ class Manifest:
     packages: tuple[PackageVersion, ...] = ()
     nodes: tuple[NodeParameters, ...] = ()
     silent_nodes: tuple[str, ...] = ()
+    redacted: tuple[str, ...] = ()
 
     @property
     def back_ends(self) -> tuple[BackEnd, ...]:
@@ -114,6 +116,7 @@ def manifest_from_json(text: str) -> Manifest:
             ),
             nodes=tuple(_node_parameters(row) for row in record.get("nodes", ())),
             silent_nodes=tuple(str(name) for name in record.get("silent_nodes", ())),
+            redacted=tuple(str(what) for what in record.get("redacted", ())),
         )
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise BadFileError(f"this is no manifest of a run: {text[:80]!r} ({error!r})") from error
