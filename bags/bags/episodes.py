@@ -23,6 +23,12 @@ class EpisodeSpan:
     from_ns: int | None
     until_ns: int | None
 
+    def holds(self, log_time_ns: int) -> bool:
+        """Whether what was said at `log_time_ns` is about this search."""
+        early = self.from_ns is not None and log_time_ns <= self.from_ns
+        late = self.until_ns is not None and log_time_ns >= self.until_ns
+        return not early and not late
+
 
 def robots(bag: Bag) -> tuple[str, ...]:
     """Namespaces of the robots that told how their search stands, "" for none."""

@@ -19,7 +19,7 @@ from bags.report_camera import CameraFrame, Moment, camera_frames, chosen_moment
 from bags.report_facts import Fact, manifest_facts, search_facts
 from bags.report_floor import FloorPicture, floor_picture
 from bags.report_marks import DecisionRow, Mark, Place, Thing, decision_rows, marks, things, way_of
-from bags.report_talk import CHAT, Clock, Complaint, Line, belongs, complaints, conversation
+from bags.report_talk import CHAT, Clock, Complaint, Line, complaints, conversation
 from bags.search_run import TOPICS, Heard, SearchRun, read_search
 from robustnav_msgs_py.errors import BadMessageError, BadParameterError
 from robustnav_msgs_py.values import Pose2D
@@ -70,7 +70,7 @@ def read_report(bag: Bag, *, namespace: str | None = None, episode: int | None =
     span = _span(bag, run)
     clock = _clock(bag, run)
     said = [value for topic in CHAT for value in _told(bag, topic, run, missing)]
-    chat = conversation((value for value in said if belongs(span, value.log_time_ns)), clock)
+    chat = conversation([value for value in said if span is None or span.holds(value.log_time_ns)], clock)
     if run is None:
         return _without_search(bag, missing, chat, complaints(bag, span, clock))
     metrics = measure(run, settings)

@@ -39,15 +39,6 @@ class Complaint:
     text: str
 
 
-def belongs(span: EpisodeSpan | None, log_time_ns: int) -> bool:
-    """Whether what was said at `log_time_ns` is about the search `span`; all is, where there is only one."""
-    if span is None:
-        return True
-    early = span.from_ns is not None and log_time_ns <= span.from_ns
-    late = span.until_ns is not None and log_time_ns >= span.until_ns
-    return not early and not late
-
-
 def conversation(said: Iterable[RecordedValue], clock: Clock) -> tuple[Line, ...]:
     """The lines of both, in order."""
     lines = sorted(said, key=lambda value: value.log_time_ns)
@@ -62,11 +53,15 @@ def conversation(said: Iterable[RecordedValue], clock: Clock) -> tuple[Line, ...
 
 
 def complaints(bag: Bag, span: EpisodeSpan | None, clock: Clock) -> tuple[Complaint, ...]:
-    """What diagnostics and the nodes' logs warn of; a state that lasts is told once, with its end."""
+    """What diagnostics and the nodes' logs warn of; a state that lasts is told once, with its end.
+
+    Only what was told during the search `span`, everything where that is None.
+    """
     found: list[Complaint] = []
     states: dict[str, tuple[int, str]] = {}
     for recorded in bag.messages([DIAGNOSTICS, LOG]):
-        if not belongs(span, recorded.log_time_ns) or len(found) >= MOST_COMPLAINTS:
+        elsewhere = span is not None and not span.holds(recorded.log_time_ns)
+        if elsewhere or len(found) >= MOST_COMPLAINTS:
             continue
         t_s = clock(recorded.log_time_ns)
         if recorded.type == LOG_TYPE and recorded.message.level >= LOG_WARN:
