@@ -8,18 +8,20 @@ from robustnav_msgs_py.records import SearchPhase
 
 ACTIVE = (SearchPhase.SEARCHING, SearchPhase.DOCKING)
 STATE = "search/state"
+NEVER_NS = 2**63 - 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EpisodeSpan:
     """One search of the robot in `namespace`, in log times.
 
-    What is said from `from_ns`, the end of the search before, until before `until_ns`, the begin of the next,
-    is about this one; None where there is none before or after.
+    It ended at `end_ns` (None: not before the bag did). What is said after `from_ns`, the end of the search
+    before, and before `until_ns`, the begin of the next, is about this one; None where there is no other.
     """
 
     namespace: str
     episode: int
+    end_ns: int | None
     from_ns: int | None
     until_ns: int | None
 
@@ -28,6 +30,10 @@ class EpisodeSpan:
         early = self.from_ns is not None and log_time_ns <= self.from_ns
         late = self.until_ns is not None and log_time_ns >= self.until_ns
         return not early and not late
+
+    def led_here(self, log_time_ns: int) -> bool:
+        """Whether what was said at `log_time_ns` was on the way to the end of this search."""
+        return self.holds(log_time_ns) and (self.end_ns is None or log_time_ns <= self.end_ns)
 
 
 def robots(bag: Bag) -> tuple[str, ...]:
@@ -43,16 +49,18 @@ def episode_spans(bag: Bag, namespace: str = "") -> tuple[EpisodeSpan, ...]:
         state, now_ns = heard.value, heard.log_time_ns
         if state.episode in bounds:
             begin_ns, end_ns = bounds[state.episode]
-            bounds[state.episode] = (begin_ns, now_ns if state.phase in ACTIVE else min(end_ns, now_ns))
+            bounds[state.episode] = (begin_ns, NEVER_NS if state.phase in ACTIVE else min(end_ns, now_ns))
         elif state.phase in ACTIVE:
-            bounds[state.episode] = (now_ns, 2**63 - 1)
+            bounds[state.episode] = (now_ns, NEVER_NS)
     spans, numbers = [], sorted(bounds, key=lambda number: bounds[number][0])
     for place, number in enumerate(numbers):
         first, last = place == 0, place == len(numbers) - 1
+        end_ns = bounds[number][1]
         spans.append(
             EpisodeSpan(
                 namespace=namespace,
                 episode=number,
+                end_ns=None if end_ns == NEVER_NS else end_ns,
                 from_ns=None if first else bounds[numbers[place - 1]][1],
                 until_ns=None if last else bounds[numbers[place + 1]][0],
             )

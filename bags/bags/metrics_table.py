@@ -41,8 +41,8 @@ NAMES: Mapping[str, str] = MappingProxyType(
 class MetricsRow:
     """One search of the robot `robot` (its namespace, "" for none) in a bag.
 
-    `questions` is how many lines the robot said to the person that end in a question mark; None where what it
-    said was not recorded.
+    `questions` is how many lines with a question mark at their end the robot said to the person, from the end
+    of the search before until the end of this one; None where what it said was not recorded.
     """
 
     bag: str
@@ -90,7 +90,7 @@ def _questions(bag: Bag, robot: str, span: EpisodeSpan | None) -> int | None:
     return sum(
         said.value.rstrip().endswith("?")
         for said in recorded_values(bag, [ANSWERS], namespace=robot)
-        if span is None or span.holds(said.log_time_ns)
+        if span is None or span.led_here(said.log_time_ns)
     )
 
 
