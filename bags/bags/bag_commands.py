@@ -70,6 +70,7 @@ def report_command(
     episode: Annotated[
         int | None, typer.Option(min=0, help="number of the search; default: the last one")
     ] = None,
+    robot: Annotated[str | None, typer.Option(help="namespace, where the bag is of several robots")] = None,
 ) -> None:
     """Write one page that shows a search over time; it opens anywhere and asks nothing of any network."""
     from bags.picture import draw_search
@@ -81,10 +82,10 @@ def report_command(
     page = out or bag.parent / f"{bag.name.removesuffix('.mcap') or 'report'}.html"
     check_writable(page, png)
     with open_bag(bag) as opened:
-        write_report_page(read_report(opened, episode=episode), page)
+        write_report_page(read_report(opened, namespace=robot, episode=episode), page)
         _say(f"wrote {page}")
         if png is not None:
-            draw_search(opened, png, episode=episode)
+            draw_search(opened, png, namespace=robot, episode=episode)
             _say(f"wrote {png}")
 
 

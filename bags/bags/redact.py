@@ -11,7 +11,7 @@ from mcap.records import Attachment, Channel, Chunk, Header, Message, Metadata, 
 
 from bags.bag_metadata import BagMetadata, CustomEntry, joined
 from bags.decoding import MessageDecoder
-from bags.earlier_files import counted, file_name
+from bags.earlier_files import CLOSED_ENTRY, counted, file_name
 from bags.image_redaction import blur_message, is_colored_cloud, is_image, may_hold_images, redact_parts
 from bags.mcap_rewriter import McapRewriter, new_chunk, record_bytes
 from bags.mcap_scan import (
@@ -125,7 +125,8 @@ def _write(bag: Bag, path: Path, staged: Path, out: Path, worker: "_Worker") -> 
         files=tuple(row for row, _ in holds),
         topics=joined(topic for _, topics in holds for topic in topics),
         custom=(
-            *(before.custom if before else ()),
+            # this bag is closed, whatever became of the recorder of the other
+            *(entry for entry in (before.custom if before else ()) if entry.name != CLOSED_ENTRY),
             CustomEntry(name=REDACTED_ENTRY, text="; ".join(worker.done.sentences)),
         ),
         ros_distro=before.ros_distro if before else "jazzy",
@@ -158,7 +159,7 @@ def _spoken(bag: Bag) -> SpokenTexts:
     labels = [name for name in names if name.endswith(LABELS)]
     known = {label for told in bag.messages(labels) for label in CONVERSIONS[LABELS[0]](told.message)}
     spoken = SpokenTexts(known)
-    for recorded in bag.messages([name for name in names if carries_chat(name)]):
+    for recorded in bag.messages([row.name for row in bag.topics if carries_chat(row.name, row.type)]):
         spoken.add(chat_texts(recorded.type, recorded.message))
     for recorded in bag.messages([name for name in names if name.endswith("/search/target")]):
         try:
@@ -250,7 +251,7 @@ class _Worker:
                 return None
         if self._spoken is None:
             return data
-        said_here = carries_chat(channel.topic)
+        said_here = carries_chat(channel.topic, kind)
         if not said_here and not self._spoken.stand_in(data):
             return data
         message = self._decoder.decode(kind, data)

@@ -82,7 +82,7 @@ def read_report(bag: Bag, *, namespace: str | None = None, episode: int | None =
     ]
     missing += _lacking(run, film, frames)
     floor = floor_picture(run.floor_map) if run.floor_map else None
-    way, drawn = way_of(run, clock), marks(run, settings, clock)
+    way, drawn, objects = way_of(run, clock), marks(run, settings, clock), things(run)
     return ReportData(
         title=headline(metrics),
         verdict={True: "good", False: "bad" if metrics.found else "open", None: "open"}[metrics.success],
@@ -93,10 +93,10 @@ def read_report(bag: Bag, *, namespace: str | None = None, episode: int | None =
         half_view_rad=settings.space.horizontal_view_rad / 2.0,
         floor=floor,
         belief=film,
-        shown_m=_shown(floor, film, [*way, *drawn]),
+        shown_m=_shown(floor, film, [*way, *drawn, *objects]),
         way=way,
         goals=tuple(_place(clock(value.log_time_ns), value.value.pose) for value in goals),
-        things=things(run),
+        things=objects,
         marks=drawn,
         decisions=decision_rows(run, decided_s),
         frames=frames,
@@ -199,7 +199,7 @@ def _frames(bag: Bag, run: SearchRun, clock: Clock, missing: list[str]) -> tuple
 
 
 def _shown(
-    floor: FloorPicture | None, film: BeliefFilm | None, places: Sequence[Place | Mark]
+    floor: FloorPicture | None, film: BeliefFilm | None, places: Sequence[Place | Mark | Thing]
 ) -> tuple[float, float, float, float] | None:
     if floor is not None:
         return floor.shown_m

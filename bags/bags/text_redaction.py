@@ -5,6 +5,8 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 CHAT_FOLDERS = frozenset({"chat", "dialogue"})
+# What every node says of itself, below its name: nobody's words.
+OF_EVERY_NODE = frozenset({"lifecycle_msgs", "rcl_interfaces", "service_msgs"})
 STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
 # Of the dialogue's state: what is no text of anybody. The target is a class name, or looked for elsewhere.
 KEPT_VALUES = frozenset({"scenario", "target", "lines_heard"})
@@ -13,9 +15,10 @@ SHORTEST_CHARS = 8
 CUT = "…"  # ends a text that was shortened for display
 
 
-def carries_chat(topic: str) -> bool:
+def carries_chat(topic: str, message_type: str) -> bool:
     """Whether a topic, in whatever namespace, is one of the dialogue's: chat/..., dialogue/..."""
-    return bool(CHAT_FOLDERS & set(topic.split("/")[:-1]))
+    is_of_ros = message_type.partition("/")[0] in OF_EVERY_NODE
+    return bool(CHAT_FOLDERS & set(topic.split("/"))) and not is_of_ros
 
 
 def replacement(text: str) -> str:

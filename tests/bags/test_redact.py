@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
+from lifecycle_msgs.msg import State, TransitionEvent
 from mcap.reader import make_reader
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
@@ -155,6 +156,20 @@ def test_what_was_said_is_nowhere_in_the_bag(tmp_path: Path, manifest: Manifest)
     assert told["/detections/labels"].data == "mug, plant"
     assert raw(tmp_path / "out")[-1] == raw(source)[-1]
     assert conversions.record_from_message(told["/r/dialogue/state"], DialogueState).target == "mug"
+
+
+def test_what_nodes_say_of_themselves_is_nobody_s_words(tmp_path: Path, manifest: Manifest) -> None:
+    event = TransitionEvent(start_state=State(label="unconfigured"))
+    source = write_bag(
+        tmp_path / "events",
+        manifest,
+        ("/dialogue/transition_event", "lifecycle_msgs/msg/TransitionEvent", event),
+        ("/rosout", "rcl_interfaces/msg/Log", Log(msg="dialogue is unconfigured")),
+        ("/chat", "std_msgs/msg/String", String(data=SECRET)),
+    )
+    done = redact_bag(source, tmp_path / "out", images=Images.REMOVE, chat=Chat.REMOVE)
+    assert raw(tmp_path / "out")[:2] == raw(source)[:2]
+    assert set(done.replaced) == {"/chat"}
 
 
 def test_what_is_to_be_kept_is_kept_byte_by_byte(picture_bag: Callable[..., Path], tmp_path: Path) -> None:

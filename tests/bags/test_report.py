@@ -154,6 +154,13 @@ def test_a_search_that_is_not_there_is_refused(search_bag: Callable[..., Path]) 
         read(search_bag(), episode=5)
 
 
+def test_a_robot_in_a_namespace_is_reported_on(search_bag: Callable[..., Path]) -> None:
+    report = read(search_bag(namespace="/robot1"))
+    assert report.verdict == "good"
+    assert report.floor is not None
+    assert report.way
+
+
 def test_pictures_are_small_few_and_carry_their_decision(picture_bag: Callable[..., Path]) -> None:
     report = read(picture_bag(640, 400))
     assert 1 < len(report.frames) <= MOST_PICTURES
