@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -12,10 +12,11 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from bags.episodes import EpisodeSpan, episode_spans, robots
+from bags.episodes import ACTIVE, EpisodeSpan, episode_spans, robots
 from bags.metrics import SearchMetrics, search_metrics
 from bags.reader import Bag
 from bags.recorded_values import recorded_values
+from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.benchmarks.bootstrap import mean_intervals
 
 # What the thesis measures of instructions that may be wrong; no topic of ours carries it yet.
@@ -70,17 +71,23 @@ class Mean:
 def metrics_rows(bag: Bag) -> tuple[MetricsRow, ...]:
     """A row for each search in `bag`, by robot and in their order.
 
-    Where nobody told how a search stood, the bag as a whole is one. Raises what `search_metrics` raises.
+    Where nobody told how a search stood, the bag as a whole is one. How a search went that had not ended when
+    the bag did is not known. Raises BadFileError where no search began, and what `search_metrics` raises.
     """
     rows = []
-    for robot in robots(bag) or ("",):
+    told_by = robots(bag)
+    for robot in told_by or ("",):
         spans = episode_spans(bag, robot)
-        for span in spans or (None,):
+        for span in spans if told_by else (None,):
             metrics = search_metrics(
                 bag, namespace=robot if span else None, episode=span.episode if span else None
             )
+            if metrics.phase in ACTIVE:
+                metrics = replace(metrics, found=None, success=None, spl=None)
             questions = _questions(bag, robot, span)
             rows.append(MetricsRow(bag=str(bag.path), robot=robot, metrics=metrics, questions=questions))
+    if not rows:
+        raise BadFileError(f"{bag.path} holds no search: none had begun when it ended")
     return tuple(rows)
 
 

@@ -21,7 +21,7 @@ from bags.report_floor import FloorPicture, floor_picture
 from bags.report_marks import DecisionRow, Mark, Place, Thing, decision_rows, marks, things, way_of
 from bags.report_talk import CHAT, Clock, Complaint, Line, complaints, conversation
 from bags.search_run import TOPICS, Heard, SearchRun, read_search
-from robustnav_msgs_py.errors import BadMessageError, BadParameterError
+from robustnav_msgs_py.errors import BadFileError, BadMessageError, BadParameterError
 from robustnav_msgs_py.values import Pose2D
 
 CAMERA, BELIEF, GOAL = "camera/image_raw", "belief/cloud", "goal_pose"
@@ -155,7 +155,7 @@ def _told(bag: Bag, topic: str, run: SearchRun | None, missing: list[str]) -> li
     found: list[RecordedValue] = []
     try:
         found.extend(recorded_values(bag, [topic], namespace=run.namespace if run else ""))
-    except BadMessageError as error:
+    except (BadMessageError, BadFileError) as error:
         missing.append(f"Of {topic}, only what came before a bad message is shown: {error}.")
     return found
 
@@ -193,7 +193,7 @@ def _frames(bag: Bag, run: SearchRun, clock: Clock, missing: list[str]) -> tuple
         return camera_frames(
             images, chosen_moments(moments), run.detections, run.detection_labels or (), run.target
         )
-    except BadMessageError as error:
+    except (BadMessageError, BadFileError) as error:
         missing.append(f"The camera's images cannot be shown: {error}.")
         return ()
 

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import html
 import json
+import math
 from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
@@ -75,8 +76,17 @@ def _hash(text: str) -> str:
 
 def _json(content: dict[str, Any]) -> str:
     """JSON in which nothing can end the element that it stands in, whatever people said to the robot."""
-    text = json.dumps(content, allow_nan=False, separators=(",", ":"))
+    text = json.dumps(_finite(content), allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def _finite(value: Any) -> Any:
+    """`value` with None for every number that is not finite: JSON has no word for these."""
+    if isinstance(value, dict):
+        return {name: _finite(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _palette() -> dict[str, str | list[str]]:

@@ -17,6 +17,7 @@ from bags.metrics_table import MetricsRow, means, metrics_rows, render, report_c
 from bags.reader import open_bag
 from bags.writer import BagWriter
 from robustnav_msgs_py import conversions
+from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.records import SearchPhase, SearchState
 
 
@@ -93,6 +94,23 @@ def test_each_search_and_robot_has_its_row_and_its_questions(
     assert (first.end_ns, second.end_ns) == (second.from_ns, third.from_ns)
     assert not first.led_here(first.until_ns - 1)
     assert first.holds(first.until_ns - 1)
+
+
+def test_how_a_search_went_that_had_not_ended_is_not_known(
+    search_bag: Callable[..., Path], corridor: Any
+) -> None:
+    rows = rows_of(search_bag(corridor.flat, replace(corridor.told, phase=SearchPhase.SEARCHING)))
+    assert (rows[0].metrics.success, rows[0].metrics.spl, rows[0].metrics.steps) == (None, None, 14)
+    assert not {"sr", "spl", "apl"} & {mean.name for mean in means(rows)}
+
+
+def test_a_bag_in_which_no_search_began_has_no_row(
+    tmp_path: Path, manifest: Manifest, make_talk: Callable[..., Any]
+) -> None:
+    with BagWriter(tmp_path / "idle", manifest=manifest) as writer:
+        make_talk(writer, "").say("search/state", conversions.record_to_message(SearchState()))
+    with pytest.raises(BadFileError, match="none had begun"):
+        rows_of(tmp_path / "idle")
 
 
 def test_a_bag_in_which_nobody_tells_how_the_search_stands_is_one_row(

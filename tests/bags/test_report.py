@@ -3,8 +3,10 @@
 import base64
 import io
 import json
+import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ import pytest
 from PIL import Image
 
 from bags.changed_parameters import DECLARATIONS, changed_parameters
+from bags.definitions import message_definition
 from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.metrics import search_metrics
 from bags.reader import open_bag
@@ -147,6 +150,24 @@ def test_a_cut_bag_gives_a_report_of_what_is_left(search_bag: Callable[..., Path
     assert report.missing[0].startswith("The recording was cut.")
     assert report.decisions
     report_page(report)
+
+
+def test_numbers_that_are_not_finite_do_not_break_the_page(search_bag: Callable[..., Path]) -> None:
+    report = read(search_bag())
+    broken = replace(report.things[0], x_m=math.nan)
+    told = data_in(report_page(replace(report, things=(broken,), half_view_rad=math.inf)))
+    assert (told["things"][0]["x_m"], told["half_view_rad"]) == (None, None)
+
+
+def test_a_line_that_is_no_text_ends_the_talk_but_not_the_report(tmp_path: Path, manifest: Manifest) -> None:
+    with BagWriter(tmp_path / "bad", manifest=manifest) as writer:
+        channel = writer.add_topic("/chat/from_user", message_definition("std_msgs/msg/String", ()))
+        for number, text in enumerate((b"ok\0", b"\xff\xfe\0")):
+            data = b"\0\1\0\0\3\0\0\0" + text
+            writer.write(channel, log_time_ns=number, publish_time_ns=number, data=data)
+    report = read(tmp_path / "bad")
+    assert [line.text for line in report.chat] == ["ok"]
+    assert "Of chat/from_user, only what came before a bad message is shown" in report.missing[-1]
 
 
 def test_a_search_that_is_not_there_is_refused(search_bag: Callable[..., Path]) -> None:
