@@ -6,6 +6,7 @@ import random
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,9 @@ from bags.bag_commands import bag_app
 from bags.definitions import MessageDefinition
 from bags.manifest import Manifest
 from bags.writer import BagWriter
+from robustnav_msgs_py import conversions
 from robustnav_msgs_py.errors import BadFileError, RobustnavError
+from robustnav_msgs_py.records import SearchPhase, SearchState
 from robustnav_nodes import cli
 
 
@@ -54,6 +57,24 @@ def test_page_and_picture_are_written(
     assert bag.with_suffix(".html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert (tmp_path / "a.png").stat().st_size > 10_000
     assert "wrote" in capsys.readouterr().out
+
+
+def test_one_search_of_several_is_chosen(
+    tmp_path: Path, manifest: Manifest, make_talk: Callable[..., Any]
+) -> None:
+    with BagWriter(tmp_path / "two", manifest=manifest) as writer:
+        talk = make_talk(writer)
+        for episode, target in ((1, "mug"), (2, "book")):
+            talk.say("chat/from_user", conversions.text_to_message(f"find the {target}"))
+            for phase in (SearchPhase.SEARCHING, SearchPhase.STOPPED):
+                state = SearchState(phase=phase, target=target, episode=episode)
+                talk.say("search/state", conversions.record_to_message(state))
+    run("report", tmp_path / "two", "--episode", 1, "--out", tmp_path / "a.html")
+    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "Searching for “mug”: stopped" in page
+    assert "find the mug" in page
+    run("report", tmp_path / "two", "--out", tmp_path / "a.html")
+    assert "find the mug" not in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
 def test_bags_are_redacted_and_repaired(search_bag: Callable[..., Path], tmp_path: Path) -> None:

@@ -76,7 +76,8 @@ def test_no_row_of_a_picture_is_left_and_all_else_is(
     source = picture_bag(64, 48, chunk_bytes=20_000)
     before, rows = raw(source), list(rows_of(source))
     assert len(rows) > 100
-    assert all(row in contents(source) for row in rows[:100])
+    whole = contents(source)
+    assert all(row in whole for row in rows[:100])
     done = redact_bag(source, tmp_path / "out", images=Images.REMOVE, chat=Chat.REMOVE)
     assert raw(tmp_path / "out") == [item for item in before if item.topic not in IMAGE_TOPICS]
     left = contents(tmp_path / "out")
@@ -222,7 +223,34 @@ def test_a_bag_that_was_cut_is_redacted_as_far_as_it_is_whole(
     rows, before = list(rows_of(source)), raw(source)
     redact_bag(source, tmp_path / "out", images=Images.REMOVE, chat=Chat.REMOVE)
     assert raw(tmp_path / "out") == [item for item in before if item.topic not in IMAGE_TOPICS]
-    assert not any(row in contents(tmp_path / "out") for row in rows)
+    left = contents(tmp_path / "out")
+    assert not any(row in left for row in rows)
+
+
+def test_every_file_of_a_bag_is_redacted(
+    picture_bag: Callable[..., Path], tmp_path: Path, manifest: Manifest
+) -> None:
+    source = picture_bag(32, 32, chunk_bytes=8000)
+    (file,) = source.glob("*.mcap")
+    file.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
+    with BagWriter(source, manifest=manifest, resume=True) as writer:
+        channel = writer.add_topic("/chat/from_user", message_definition("std_msgs/msg/String", ()))
+        data = serialize_message(String(data=SECRET))
+        writer.write(channel, log_time_ns=2**61, publish_time_ns=1, data=data)
+    rows = list(rows_of(source))
+    redact_bag(source, tmp_path / "out", images=Images.REMOVE, chat=Chat.REMOVE)
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "out_0.mcap",
+        "out_1.mcap",
+        "metadata.yaml",
+    }
+    before = [item for item in raw(source) if item.topic not in IMAGE_TOPICS]
+    assert raw(tmp_path / "out")[:-1] == before[:-1]
+    left = contents(tmp_path / "out")
+    assert not any(secret in left for secret in (SECRET.encode(), *rows))
+    with open_bag(tmp_path / "out") as bag:
+        assert bag.manifest is not None
+        assert bag.manifest.redacted
 
 
 @pytest.mark.parametrize("chunked", [True, False])
