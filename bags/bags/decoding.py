@@ -42,6 +42,11 @@ class MessageDecoder:
         except (SerdeError, IndexError, MemoryError) as error:
             raise BadFileError(f"{len(data)} bytes are no message of type {message_type}: {error}") from error
 
+    def encode(self, message_type: str, message: Any) -> bytes:
+        """Inverse of `decode`: the message as CDR."""
+        types = self._types if message_type in self._types.fielddefs else _jazzy_types()
+        return bytes(types.serialize_cdr(message, message_type))
+
 
 @cache
 def _jazzy_types() -> Typestore:

@@ -88,12 +88,12 @@ def repair_earlier_files(paths: Sequence[Path]) -> EarlierFiles:
     problems: list[str] = []
     for path in paths:
         try:
-            if not _has_sound_end(path):
+            if not has_sound_end(path):
                 repairs.append(repair_file(path))
         except (BadFileError, OSError) as error:
             problems.append(f"{path} was cut and cannot be repaired: {error}")
         try:
-            file, rows = _counted(path)
+            file, rows = counted(path)
         except BadFileError as error:
             problems.append(f"{path} is left out of the bag: {error}")
             continue
@@ -104,7 +104,8 @@ def repair_earlier_files(paths: Sequence[Path]) -> EarlierFiles:
     )
 
 
-def _counted(path: Path) -> tuple[FileRow, list[TopicRow]]:
+def counted(path: Path) -> tuple[FileRow, list[TopicRow]]:
+    """What the file at `path` holds, as metadata.yaml tells it; raises BadFileError."""
     with contextlib.closing(McapFile(path)) as file:
         rows = [channel.row for channel in file.channels]
         start_ns, stop_ns = file.span_ns or (0, 0)
@@ -119,7 +120,7 @@ def _number(folder: Path, path: Path) -> int | None:
 
 
 def _is_closed(folder: Path, last: Path) -> bool:
-    if not _has_sound_end(last):
+    if not has_sound_end(last):
         return False
     try:
         custom = read_metadata(folder).custom
@@ -128,6 +129,7 @@ def _is_closed(folder: Path, last: Path) -> bool:
     return all(entry.text != "no" for entry in custom if entry.name == CLOSED_ENTRY)
 
 
-def _has_sound_end(path: Path) -> bool:
+def has_sound_end(path: Path) -> bool:
+    """Whether the file at `path` was finished; raises BadFileError where it cannot be opened."""
     with open_file(path) as stream:
         return summary_at_end(stream) is not None

@@ -147,6 +147,8 @@ def _manifest_facts(manifest: Manifest) -> list[tuple[str, str]]:
         )
     if manifest.nodes:
         facts.append(("parameters of", ", ".join(node.node for node in manifest.nodes)))
+    if manifest.redacted:
+        facts.append(("redacted", "; ".join(manifest.redacted)))
     if manifest.silent_nodes:
         facts.append(("no answer from", ", ".join(manifest.silent_nodes)))
     return facts

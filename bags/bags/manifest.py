@@ -51,7 +51,8 @@ class Manifest:
     `commit` is the checkout's commit, "" where the code was installed rather than checked out;
     `uncommitted_changes` says that the files differed from it. `sim_start_ns` is the first time on
     `/clock`. `silent_nodes` were in the graph and did not tell their parameters. `lockstep` says that the run
-    can be had again, message by message.
+    can be had again, message by message. `redacted` says what was taken out of the bag after the run, before
+    it was shared.
     """
 
     version: str
@@ -66,6 +67,7 @@ class Manifest:
     nodes: tuple[NodeParameters, ...] = ()
     silent_nodes: tuple[str, ...] = ()
     lockstep: bool = False
+    redacted: tuple[str, ...] = ()
 
     @property
     def back_ends(self) -> tuple[BackEnd, ...]:
@@ -117,6 +119,7 @@ def manifest_from_json(text: str) -> Manifest:
             nodes=tuple(_node_parameters(row) for row in record.get("nodes", ())),
             silent_nodes=tuple(str(name) for name in record.get("silent_nodes", ())),
             lockstep=bool(record.get("lockstep", False)),
+            redacted=tuple(str(what) for what in record.get("redacted", ())),
         )
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise BadFileError(f"this is no manifest of a run: {text[:80]!r} ({error!r})") from error

@@ -133,7 +133,8 @@ class McapFile:
                 yield channel.topic, schema.name if schema else "", message
         except DAMAGE as error:
             raise BadFileError(
-                f"{self.path} is damaged inside and cannot be read to its end: {error!r}"
+                f"{self.path} is damaged inside and cannot be read to its end: {error!r}; "
+                "`robustnav bag repair` keeps what is whole"
             ) from error
 
     def metadata_records(self, name: str) -> tuple[dict[str, str], ...]:

@@ -99,7 +99,7 @@ class McapRewriter:
     def finish(self) -> None:
         """Write the summary and the end of the file."""
         self._write_missing_header()
-        self._output.write(_bytes_of(DataEnd(data_section_crc=0)))
+        self._output.write(record_bytes(DataEnd(data_section_crc=0)))
         summary_at = self._output.tell()
         summary, offsets = RecordBuilder(), RecordBuilder()
         for kind, records in self._summary_groups():
@@ -119,11 +119,11 @@ class McapRewriter:
         )
         checksum = zlib.crc32(covered + begin_of_footer)
         footer = Footer(summary_start=summary_at, summary_offset_start=offsets_at, summary_crc=checksum)
-        self._output.write(covered + _bytes_of(footer) + MAGIC)
+        self._output.write(covered + record_bytes(footer) + MAGIC)
 
     def _write_missing_header(self) -> None:
         if not self._has_header:
-            self._output.write(_bytes_of(Header(profile=PROFILE, library="")))
+            self._output.write(record_bytes(Header(profile=PROFILE, library="")))
             self._has_header = True
 
     def _take_chunk(self, raw: bytes, chunk: Chunk, contents: ChunkContents) -> None:
@@ -133,7 +133,7 @@ class McapRewriter:
             starts = sorted(start for channel in unknown for _, start in contents.messages[channel])
             self.lost_messages += len(starts)
             chunk = _without(chunk, contents.data, starts)
-            raw, contents = _bytes_of(chunk), chunk_contents(chunk)
+            raw, contents = record_bytes(chunk), chunk_contents(chunk)
         for channel, places in contents.messages.items():
             self._count(channel, [log_time_ns for log_time_ns, _ in places])
         chunk_at = self._output.tell()
@@ -216,17 +216,23 @@ def _without(chunk: Chunk, data: bytes, starts: list[int]) -> Chunk:
         _, length = RECORD_HEADER.unpack_from(data, start)
         at = start + RECORD_HEADER.size + length
     kept += data[at:]
+    return new_chunk(bytes(kept), chunk.message_start_time, chunk.message_end_time)
+
+
+def new_chunk(data: bytes, start_ns: int, end_ns: int) -> Chunk:
+    """A chunk of the records in `data`, whose messages have log times from `start_ns` to `end_ns`."""
     return Chunk(
         compression="zstd",
-        data=zstandard.compress(bytes(kept)),
-        message_end_time=chunk.message_end_time,
-        message_start_time=chunk.message_start_time,
-        uncompressed_crc=zlib.crc32(kept),
-        uncompressed_size=len(kept),
+        data=zstandard.compress(data),
+        message_end_time=end_ns,
+        message_start_time=start_ns,
+        uncompressed_crc=zlib.crc32(data),
+        uncompressed_size=len(data),
     )
 
 
-def _bytes_of(record: McapRecord) -> bytes:
+def record_bytes(record: McapRecord) -> bytes:
+    """A record as it stands in a file, its header included."""
     builder = RecordBuilder()
     record.write(builder)
     return bytes(builder.end())

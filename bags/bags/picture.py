@@ -99,13 +99,14 @@ def _draw_scale(figure: Figure, shown_m: float, height_in: float) -> None:
 def _draw_words(figure: Figure, metrics: SearchMetrics, height_in: float) -> None:
     head = 1.0 - 0.28 / height_in
     words = figure.text(
-        0.025, head, _headline(metrics), fontsize=15, fontweight="bold", color=INK, va="center"
+        0.025, head, headline(metrics), fontsize=15, fontweight="bold", color=INK, va="center"
     )
     words.set_parse_math(False)  # a "$" in a name is a "$"
     figure.text(0.025, head - 0.3 / height_in, _summary(metrics), fontsize=10, color=MUTED, va="center")
 
 
-def _headline(metrics: SearchMetrics) -> str:
+def headline(metrics: SearchMetrics) -> str:
+    """What was searched for and how it ended, in one line."""
     wanted = f"“{metrics.target}”" if metrics.target else "nothing in particular"
     return f"Searching for {wanted}: {_outcome(metrics)}".removesuffix(": ")
 

@@ -4,6 +4,7 @@ import signal
 import sys
 import time
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import Annotated
 
@@ -21,8 +22,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-bag_app = typer.Typer(help="Look into recorded runs.", no_args_is_help=True)
-app.add_typer(bag_app, name="bag")
 app.add_typer(bench_app, name="bench")
 app.add_typer(data_app, name="data")
 
@@ -184,16 +183,6 @@ def doctor() -> None:
         raise typer.Exit(1)
 
 
-@bag_app.command("info")
-def bag_info_command(bag: Path) -> None:
-    """What a bag holds: topics, counts, rates, QoS, and the manifest of its run."""
-    from bags.info import bag_info, render
-    from bags.reader import open_bag
-
-    with open_bag(bag) as opened:
-        _console().print(render(bag_info(opened)))
-
-
 def _new_bag(bag: Path | None, kind: str) -> Path:
     """The folder of this run's bag; raises BadParameterError where it exists already."""
     folder = bag or Path("runs") / f"{kind}_{time.strftime('%Y%m%d_%H%M%S')}"
@@ -210,11 +199,20 @@ def _run(package: str, executable: str, arguments: list[str]) -> int:
     return run_executable(package, executable, arguments)
 
 
+@cache
+def command_line() -> typer.Typer:
+    """All commands; those on bags are their package's, which stands on this one."""
+    from bags.bag_commands import bag_app
+
+    app.add_typer(bag_app, name="bag")
+    return app
+
+
 def main() -> int:
     """Entry point; errors that robustnav raises on purpose become one sentence."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C during start-up needs no traceback
     try:
-        app()
+        command_line()()
     except BadParameterError as error:
         print(f"robustnav: {error}", file=sys.stderr)
         return 2

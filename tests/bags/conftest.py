@@ -13,12 +13,15 @@ from rclpy.serialization import serialize_message
 from bags.definitions import message_definition
 from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.offered_qos import OfferedQos
+from bags.reader import open_bag
 from bags.writer import BagWriter
 from robustnav_msgs_py import contract, conversions
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
 from robustnav_msgs_py.records import Decision, Episode, SearchPhase, SearchState
 from robustnav_msgs_py.values import (
     BeliefCloud,
+    ColorImage,
+    DepthImage,
     Detections,
     ObjectInstance,
     OccupancyMap,
@@ -382,6 +385,60 @@ def search_bag(tmp_path: Path) -> Callable[..., Path]:
         folder = tmp_path / f"search_{next(numbers)}"
         with BagWriter(folder, manifest=MANIFEST, chunk_bytes=chunk_bytes) as writer:
             write_search(Talk(writer, namespace), flat, told or Told())
+        return folder
+
+    return write
+
+
+@pytest.fixture
+def make_talk() -> Callable[..., Talk]:
+    return Talk
+
+
+@pytest.fixture
+def talk_bag(tmp_path: Path) -> Callable[..., Path]:
+    """Writes a bag in which a person says `lines` and the robot answers each, and nothing else happens."""
+
+    def write(lines: Sequence[str], answers: Sequence[str] = ()) -> Path:
+        folder = tmp_path / "talk"
+        with BagWriter(folder, manifest=MANIFEST) as writer:
+            talk = Talk(writer)
+            for line in lines:
+                talk.say("chat/from_user", conversions.text_to_message(line))
+            for answer in answers:
+                talk.say("chat/to_user", conversions.text_to_message(answer))
+        return folder
+
+    return write
+
+
+@pytest.fixture
+def picture_bag(tmp_path: Path, search_bag: Callable[..., Path]) -> Callable[..., Path]:
+    """Writes a search with an image of noise before each decision, and depth with it."""
+
+    def write(width: int, height: int, **options: Any) -> Path:
+        folder = tmp_path / "pictures"
+        rng = np.random.default_rng(3)
+        with open_bag(search_bag()) as bag, BagWriter(folder, manifest=MANIFEST, **options) as writer:
+            talk = Talk(writer)
+            for raw in bag.raw_messages():
+                if raw.topic == "/planner/decision":
+                    talk.now_ns = raw.log_time_ns - 3_000_000
+                    pixels = rng.integers(0, 256, (height, width, 3), dtype=np.uint8)
+                    image = ColorImage(pixels=pixels, stamp_ns=0, frame_id="camera")
+                    talk.say("camera/image_raw", conversions.color_to_message(image))
+                    depth_m = rng.uniform(0.5, 4.0, (height, width)).astype(np.float32)
+                    depth = DepthImage(depth_m=depth_m, stamp_ns=0, frame_id="camera")
+                    talk.say("camera/depth/image_raw", conversions.depth_to_message(depth))
+                if raw.topic not in talk.channels:
+                    kind = message_definition(raw.type, PREFIXES)
+                    talk.channels[raw.topic] = writer.add_topic(raw.topic, kind)
+                writer.write(
+                    talk.channels[raw.topic],
+                    log_time_ns=raw.log_time_ns,
+                    publish_time_ns=raw.publish_time_ns,
+                    data=raw.data,
+                )
         return folder
 
     return write

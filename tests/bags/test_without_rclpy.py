@@ -11,13 +11,26 @@ SCRIPT = textwrap.dedent(
     from pathlib import Path
     from bags.info import bag_info, render
     from bags.metrics import search_metrics
+    from bags.metrics_table import metrics_rows, render as render_metrics
     from bags.picture import draw_search
     from bags.reader import open_bag
+    from bags.redact import redact_bag
+    from bags.redaction_choices import Chat, Images
+    from bags.repair_bag import repair_bag
+    from bags.report_data import read_report
+    from bags.report_file import write_report_page
+    from robustnav_nodes.cli import command_line
 
     with open_bag(Path(sys.argv[1])) as bag:
         render(bag_info(bag))
         assert search_metrics(bag).success
         draw_search(bag, Path(sys.argv[2]))
+        render_metrics(metrics_rows(bag))
+        write_report_page(read_report(bag), Path(sys.argv[2]).with_suffix(".html"))
+    shared = Path(sys.argv[2]).parent / "shared"
+    redact_bag(Path(sys.argv[1]), shared, images=Images.REMOVE, chat=Chat.REMOVE)
+    repair_bag(shared)
+    command_line()(["bag", "info", str(shared)], standalone_mode=False)
     """
 )
 
