@@ -1,7 +1,8 @@
 """Replay a bag through the real nodes, in lock-step, and compare what they say with what was recorded."""
 
+import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
@@ -23,22 +24,27 @@ from robustnav_nodes.graph.lockstep import CLOCK, Lockstep, Said
 from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.one_process import node_class
+from robustnav_nodes.graph.search_graph import check_parameter_file
+from robustnav_nodes.graph.spin import RCLError
 
 # What stands in for the world and the person is not asked again: what it said is the input.
 REPLAYED = ("detection", "belief", "planner", "dialogue")
 NOT_COMPARED = ("/diagnostics",)
+DECISIONS = "planner/decision"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
     """The first message of a topic that is not as recorded: number `number` (from 0), said at `time_ns`.
 
-    `fields` is empty where one of the two is missing; `what` is a sentence.
+    `position` is its place among all that was recorded of the replayed nodes, so that what was said in one
+    moment has an order. `fields` is empty where one of the two is missing; `what` is a sentence.
     """
 
     topic: str
     number: int
     time_ns: int
+    position: int
     what: str
     fields: tuple[FieldDifference, ...] = ()
 
@@ -72,7 +78,12 @@ class Replay:
     def first(self) -> Difference | None:
         """The earliest difference."""
         found = [topic.first for topic in self.topics if topic.first is not None]
-        return min(found, key=lambda difference: difference.time_ns) if found else None
+        return min(found, key=lambda difference: (difference.time_ns, difference.position)) if found else None
+
+    @property
+    def first_decision(self) -> Difference | None:
+        """The first decision of the planner that is another one."""
+        return next((topic.first for topic in self.topics if topic.topic.endswith(DECISIONS)), None)
 
 
 def replay(
@@ -84,13 +95,15 @@ def replay(
     """Feed what was recorded to `nodes` (all that the bag knows of REPLAYED where empty), and compare.
 
     The nodes have the parameters of the recorded run, and those of `parameter_file` (a ROS parameter file)
-    over them. Raises BadFileError where the bag tells no parameters of a node, BadParameterError for a name
-    that is no node of the graph.
+    over them. Raises BadFileError where the bag tells no parameters of a node or the file is none,
+    BadParameterError for a name that is no node of the graph and for parameters that do not fit.
     """
     manifest = bag.manifest
     if manifest is None:
         raise BadFileError(f"{bag.path} has no manifest, so nobody knows with which parameters its nodes ran")
     told = _told(manifest)
+    if parameter_file is not None:
+        check_parameter_file(parameter_file)
     names = tuple(nodes) or tuple(name for name in REPLAYED if name in told)
     for name in names:
         _check(name, told, bag)
@@ -120,6 +133,12 @@ def _check(name: str, told: dict[str, NodeParameters], bag: Bag) -> None:
 class _Output:
     time_ns: int
     data: bytes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Recorded:
+    position: int
+    raw: RawMessage
 
 
 class _Session:
@@ -188,9 +207,9 @@ class _Session:
 
     def result(self) -> Replay:
         """Compare what was said with what was recorded."""
-        recorded: dict[str, list[RawMessage]] = {topic: [] for topic in self._outputs}
-        for raw in self._bag.raw_messages(list(self._outputs)):
-            recorded[raw.topic].append(raw)
+        recorded: dict[str, list[_Recorded]] = {topic: [] for topic in self._outputs}
+        for position, raw in enumerate(self._bag.raw_messages(list(self._outputs))):
+            recorded[raw.topic].append(_Recorded(position=position, raw=raw))
         kept = {row.name for row in self._bag.topics}  # a recorder may leave topics out
         return Replay(
             nodes=self._names,
@@ -219,12 +238,18 @@ class _Session:
             recorded.flush()
             files = [recorded.name, *([] if parameter_file is None else [str(parameter_file)])]
             kind = node_class(row.package, row.executable)
-            return kind(
-                wiring=self._lockstep.wiring,
-                context=self._context,
-                namespace=namespace,
-                cli_args=["--ros-args", *(part for file in files for part in ("--params-file", file))],
-            )
+            arguments = [part for file in files for part in ("--params-file", file)]
+            try:
+                return kind(
+                    wiring=self._lockstep.wiring,
+                    context=self._context,
+                    namespace=namespace,
+                    cli_args=["--ros-args", "--log-level", "error", *arguments],
+                )
+            except RCLError as error:
+                raise BadParameterError(
+                    f"{name} does not take these parameters: {files[-1]!r} is no ROS parameter file ({error})"
+                ) from error
 
     def _hear(self, said: Said) -> None:
         if said.topic in self._outputs:
@@ -238,18 +263,23 @@ def _plain(value: ParameterValue) -> Any:
 
 
 def _compared(
-    topic: str, row: contract.Topic, recorded: Sequence[RawMessage], replayed: Sequence[_Output]
+    topic: str, row: contract.Topic, recorded: Sequence[_Recorded], replayed: Sequence[_Output]
 ) -> TopicComparison:
     same = same_but_stamps = 0
     first: Difference | None = None
     for number, (then, now) in enumerate(zip_longest(recorded, replayed)):
         if then is None or now is None:
             missing = "was not recorded" if then is None else "did not come again"
-            time_ns = now.time_ns if then is None else then.log_time_ns
-            first = first or Difference(topic=topic, number=number, time_ns=time_ns, what=missing)
+            first = first or Difference(
+                topic=topic,
+                number=number,
+                time_ns=now.time_ns if now is not None else then.raw.log_time_ns,
+                position=then.position if then is not None else sys.maxsize,
+                what=missing,
+            )
             continue
         kind = message_class(row.type)
-        before, after = deserialize_message(then.data, kind), deserialize_message(now.data, kind)
+        before, after = deserialize_message(then.raw.data, kind), deserialize_message(now.data, kind)
         fields = tuple(differences(before, after))
         if not fields:
             same += 1
@@ -257,7 +287,12 @@ def _compared(
         if not next(iter(differences(before, after, with_stamps=False)), None):
             same_but_stamps += 1
         first = first or Difference(
-            topic=topic, number=number, time_ns=then.log_time_ns, what="differs", fields=fields
+            topic=topic,
+            number=number,
+            time_ns=then.raw.log_time_ns,
+            position=then.position,
+            what="differs",
+            fields=fields,
         )
     return TopicComparison(
         topic=topic,
@@ -267,14 +302,3 @@ def _compared(
         same_but_stamps=same_but_stamps,
         first=first,
     )
-
-
-def rows_of(result: Replay) -> Iterator[tuple[str, str]]:
-    """A topic and how it compared, in words, for each topic."""
-    for topic in result.topics:
-        words = f"{topic.same} of {topic.recorded} the same"
-        if topic.same_but_stamps:
-            words += f", {topic.same_but_stamps} more but for their stamps"
-        if topic.replayed != topic.recorded:
-            words += f", {topic.replayed} said"
-        yield topic.topic, words

@@ -67,7 +67,7 @@ class RunPlan:
         Raises BadFileError where a file cannot be written, or the user's is not there or no YAML.
         """
         if self.user_parameters is not None:
-            _check_yaml(self.user_parameters)
+            check_parameter_file(self.user_parameters)
         content = {
             f"/**/{name}": {"ros__parameters": values} for name, values in self.node_parameters().items()
         }
@@ -94,7 +94,8 @@ class RunPlan:
         return (*files, *self.ros_arguments)
 
 
-def _check_yaml(path: Path) -> None:
+def check_parameter_file(path: Path) -> None:
+    """Raise BadFileError where a ROS parameter file is not there, or no YAML."""
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
