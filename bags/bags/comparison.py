@@ -1,5 +1,10 @@
-"""Where two messages differ: field by field, not byte by byte, for CDR leaves what pads it to chance."""
+"""Where two messages differ: field by field, not byte by byte, for CDR leaves what pads it to chance.
 
+Numbers are the same where they differ by no more than rounding: another processor adds up otherwise.
+"""
+
+import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +14,9 @@ import numpy as np
 # What a decision took is a matter of the machine.
 WALL_TIME_KEYS = ("elapsed_ms",)
 LONGEST_TEXT = 60
+# Of numbers in double precision, also those that a record holds as text; of arrays in single precision.
+ROUNDING, SINGLE_ROUNDING = 1e-9, 1e-6
+NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +54,31 @@ def _differences(first: Any, second: Any, path: str, with_stamps: bool) -> Itera
 
 def _same(first: Any, second: Any) -> bool:
     if isinstance(first, float):
-        return bool(first == second or (first != first and second != second))
-    if isinstance(first, (str, bytes, int)):
+        return _close(first, second)
+    if isinstance(first, str):
+        return first == second or _same_text(first, second)
+    if isinstance(first, (bytes, int)):
         return bool(first == second)
     a, b = np.asarray(first), np.asarray(second)
-    return a.shape == b.shape and a.tobytes() == b.tobytes()
+    if a.shape != b.shape or a.tobytes() == b.tobytes():
+        return a.shape == b.shape
+    rounding = SINGLE_ROUNDING if a.dtype == np.float32 else ROUNDING
+    if not np.issubdtype(a.dtype, np.floating):
+        return False
+    return bool(np.allclose(a, b, rtol=rounding, atol=rounding, equal_nan=True))
+
+
+def _same_text(first: str, second: str) -> bool:
+    """Whether two texts are the same but for the rounding of the numbers in them."""
+    if NUMBER.sub("", first) != NUMBER.sub("", second):
+        return False
+    pairs = zip(NUMBER.findall(first), NUMBER.findall(second), strict=True)
+    return all(_close(float(a), float(b)) for a, b in pairs)
+
+
+def _close(first: float, second: float) -> bool:
+    both_nan = math.isnan(first) and math.isnan(second)
+    return both_nan or math.isclose(first, second, rel_tol=ROUNDING, abs_tol=ROUNDING)
 
 
 def _text(value: Any, other: Any) -> str:

@@ -1,5 +1,6 @@
 """Records a run in lock-step: what is said goes straight into the bag, at the run's own times."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -10,6 +11,7 @@ from rclpy.serialization import serialize_message
 from bags.definitions import ament_prefixes, message_definition
 from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.offered_qos import OfferedQos
+from bags.parameters import RecorderParameters
 from bags.provenance import manifest_of_this_run
 from bags.writer import BagWriter
 from robustnav_msgs_py.contract import Qos
@@ -30,9 +32,12 @@ class LockstepRecording:
         self._manifest: Manifest = replace(manifest_of_this_run(Path(__file__).resolve()), lockstep=True)
         self._writer = BagWriter(folder, manifest=self._manifest)
         self._channels: dict[str, int] = {}
+        self._exclude = re.compile(RecorderParameters().exclude)
 
     def take(self, said: Said) -> None:
-        """Write one message."""
+        """Write one message; what the recorder leaves out unless asked is left out here, too."""
+        if self._exclude.fullmatch(said.topic):
+            return
         channel = self._channels.get(said.topic)
         if channel is None:
             definition = message_definition(said.row.type, ament_prefixes())

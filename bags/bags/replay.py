@@ -31,6 +31,8 @@ from robustnav_nodes.graph.spin import RCLError
 REPLAYED = ("detection", "belief", "planner", "dialogue")
 NOT_COMPARED = ("/diagnostics",)
 DECISIONS = "planner/decision"
+# The nodes complain again of what they complained of then.
+QUIET = ("--ros-args", "--log-level", "error")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,7 +158,7 @@ class _Session:
         self._said: dict[str, list[_Output]] = {}
         self._nodes: list[GraphNode[Any]] = []
         self._context = Context()
-        rclpy.init(args=[], context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(args=list(QUIET), context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         try:
             for name, parameters in told.items():
                 self._nodes.append(self._made(name, parameters, parameter_file))
@@ -244,7 +246,7 @@ class _Session:
                     wiring=self._lockstep.wiring,
                     context=self._context,
                     namespace=namespace,
-                    cli_args=["--ros-args", "--log-level", "error", *arguments],
+                    cli_args=["--ros-args", *arguments],
                 )
             except RCLError as error:
                 raise BadParameterError(

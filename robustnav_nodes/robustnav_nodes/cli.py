@@ -60,6 +60,7 @@ def demo(
     bag: Annotated[Path | None, typer.Option(help="folder of the bag; default runs/demo_DATE")] = None,
     target: Annotated[str, typer.Option(help="class of the object to ask for; default: by seed")] = "",
     speed: Annotated[float, typer.Option(min=0.1, max=20.0, help="simulated seconds a second")] = DEMO_SPEED,
+    params: Annotated[Path | None, typer.Option(help="ROS parameter file (YAML)")] = None,
     lockstep: Annotated[
         bool,
         typer.Option("--lockstep", help="in one process, as fast as it goes, the same each time"),
@@ -80,6 +81,7 @@ def demo(
         seed=seed,
         with_simulated_user=not human,
         bag=folder,
+        user_parameters=params,
         parameters={
             "sim_bridge": {"real_time_factor": 1.0 if lockstep else speed},
             "simulated_user": {"target": target},

@@ -19,6 +19,8 @@ from robustnav_nodes.graph.search_graph import RunPlan
 
 # These serve processes; in one thread there is nothing to bring up, and what is said is handed over.
 NOT_IN_LOCKSTEP = ("manager", "recorder")
+# Who is up and who is down is no news where they all are one.
+QUIET = ("--ros-args", "--log-level", "warn")
 TURN_NS = NS_PER_S // 10
 
 
@@ -35,9 +37,8 @@ class LockstepRun:
         prepare_environment(local=True)
         self.lockstep = Lockstep(watch)
         self._context = Context()
-        rclpy.init(args=[], context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        # who is up and who is down is no news where they all are one
-        arguments = ["--ros-args", "--log-level", "warn", *plan.arguments(parameter_files)]
+        rclpy.init(args=list(QUIET), context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        arguments = ["--ros-args", *plan.arguments(parameter_files)]
         self.nodes: list[GraphNode[Any]] = []
         try:
             for row in plan.nodes:
