@@ -24,6 +24,7 @@ RANGE_M = 25.0
 STAND_CLEARANCE_M = 0.30
 GAP_PX = 6
 VIEW_GRID = 12
+MOST_COLUMNS = 3
 
 
 def top_view(home: Home, width_px: int, scenery: Scenery | None = None) -> Pixels:
@@ -60,9 +61,11 @@ def robot_views(home: Home, width_px: int, scenery: Scenery | None = None) -> di
     return views
 
 
-def sheet(home: Home, width_px: int, columns: int = 3) -> Pixels:
+def sheet(home: Home, width_px: int) -> Pixels:
     """The home from above, and below it a view of each room."""
     scenery = scenery_of(home)
+    rooms = len(home.rooms)
+    columns = min(range(1, MOST_COLUMNS + 1), key=lambda count: (-rooms % count, -count)) if rooms > 1 else 1
     each_px = (width_px - GAP_PX * (columns - 1)) // columns
     views = list(robot_views(home, each_px, scenery).values())
     rows = [top_view(home, width_px, scenery)]

@@ -26,7 +26,8 @@ from sim_bridge.homes.scene import Scene
 from sim_bridge.homes.scene_check import check_passages
 
 DRAWS = 60
-OBJECTS_PER_ROOM = (5, 7)
+# Besides the first ones, so many for each room.
+FIRST_OBJECTS, OBJECTS_PER_ROOM = 4, (5, 7)
 MIN_OBJECTS, MAX_OBJECTS = 4, 80
 START_CLEARANCE_M = 0.40
 START_HEADINGS = 12
@@ -58,7 +59,7 @@ def generate_scene(
 ) -> Scene:
     """A furnished home: easy ones have 1 room, medium 3 or 4, hard 6 to 10, unless `rooms` says how many.
 
-    `objects`: how many small objects (4..80); None: five to seven a room. `look_alikes`: a class of which
+    `objects`: how many small objects (4..80); None: nine to eleven in one room, five to seven more a room. `look_alikes`: a class of which
     the home holds at least three. Raises BadSceneError where the numbers are out of range or no draw of the
     seed holds together.
     """
@@ -70,7 +71,7 @@ def generate_scene(
         raise BadSceneError(f"a home has {MIN_ROOMS}..{MAX_ROOMS} rooms, not {rooms!r}")
     rng = np.random.default_rng(seed)
     room_count = rooms or room_count_of(rng, difficulty)
-    low, high = (room_count * number for number in OBJECTS_PER_ROOM)
+    low, high = (FIRST_OBJECTS + room_count * number for number in OBJECTS_PER_ROOM)
     object_count = objects or min(MAX_OBJECTS, int(rng.integers(low, high + 1)))
     last = ""
     for _ in range(DRAWS):
