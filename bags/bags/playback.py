@@ -191,7 +191,8 @@ class Playback:
 
     def set_rate(self, rate: float, now_s: float) -> None:
         """Play faster or slower, from where the bag stands: what is late is not made up for."""
-        self._from_ns, self._from_s = self.time_ns(now_s), None
+        self._from_ns = self.time_ns(now_s)
+        self._from_s = None if self._from_s is None else now_s
         self._rate = rate
 
     def time_ns(self, now_s: float) -> int:

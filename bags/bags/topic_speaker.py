@@ -6,6 +6,7 @@ from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.exceptions import NameValidationException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -52,8 +53,13 @@ class TopicSpeaker:
         for row in topics:
             try:
                 self._publishers[row.name] = self._publisher(row, offer_to_play(row, depth=depth))
-            except (RCLError, RuntimeError, ValueError) as error:  # a name, or a second type on one topic
+            except (RCLError, NameValidationException) as error:  # or two topics of unlike types became one
                 say(row.name, f"cannot be played: {' '.join(str(error).split())}")
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Recorded names of the topics that it speaks on."""
+        return tuple(self._publishers)
 
     def say(self, message: RawMessage) -> bool:
         """Send a message; False where its topic is left out."""

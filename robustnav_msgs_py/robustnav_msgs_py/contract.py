@@ -100,9 +100,9 @@ TOPICS = (
         name="/clock",
         type="rosgraph_msgs/msg/Clock",
         qos=COMMAND,
-        speakers=("sim_bridge",),
+        speakers=("sim_bridge", "player"),
         listeners=(),
-        meaning="simulated time",
+        meaning="simulated time, or that of a bag that is played",
     ),
     Topic(
         name="camera/image_raw",
