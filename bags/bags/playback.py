@@ -14,6 +14,8 @@ from robustnav_msgs_py.errors import BadFileError, BadParameterError
 NS_PER_S = 1_000_000_000
 # How long a step waits for a message that is still being read.
 STEP_WAIT_S = 1.0
+# How far before the start it is first looked for what was latched.
+FIRST_SPAN_NS = 4 * NS_PER_S
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +38,7 @@ class Programme:
         Raises BadFileError where the bag is damaged inside.
         """
         if self.start_ns > self.first_ns:
-            yield from _latched_before(bag, self.topics, self.start_ns)
+            yield from _latched_before(bag, self.topics, self.first_ns, self.start_ns)
         wanted = {(row.name, row.type) for row in self.topics}
         for raw in bag.raw_messages({row.name for row in self.topics}, start_ns=self.start_ns):
             if (raw.topic, raw.type) in wanted:
@@ -93,13 +95,29 @@ def programme(
     )
 
 
-def _latched_before(bag: Bag, topics: Collection[TopicRow], start_ns: int) -> list[RawMessage]:
-    latched = {row.name: row for row in topics if is_latched(row)}
-    kept = {name: deque[RawMessage](maxlen=latched_depth(row)) for name, row in latched.items()}
-    for raw in bag.raw_messages(latched.keys(), stop_ns=start_ns) if latched else ():
-        if raw.type == latched[raw.topic].type:
-            kept[raw.topic].append(raw)
-    return sorted((raw for last in kept.values() for raw in last), key=lambda raw: raw.log_time_ns)
+def _latched_before(bag: Bag, topics: Collection[TopicRow], first_ns: int, start_ns: int) -> list[RawMessage]:
+    """What a listener that came at `start_ns` would have found latched.
+
+    It is looked for backwards, in longer and longer spans: of most topics the last message is near, and the
+    index of a file leads past whatever does not hold the others.
+    """
+    types = {row.name: row.type for row in topics if is_latched(row)}
+    depths = {row.name: latched_depth(row) for row in topics if row.name in types}
+    kept: dict[str, list[RawMessage]] = {name: [] for name in types}
+    span_ns, until_ns = FIRST_SPAN_NS, start_ns
+    while until_ns > first_ns:
+        wanted = {name for name, found in kept.items() if len(found) < depths[name]}
+        if not wanted:
+            break
+        from_ns = max(first_ns, until_ns - span_ns)
+        last = {name: deque[RawMessage](maxlen=depths[name] - len(kept[name])) for name in wanted}
+        for raw in bag.raw_messages(wanted, start_ns=from_ns, stop_ns=until_ns):
+            if raw.type == types[raw.topic]:
+                last[raw.topic].append(raw)
+        for name, found in last.items():
+            kept[name] = [*found, *kept[name]]
+        span_ns, until_ns = 4 * span_ns, from_ns
+    return sorted((raw for found in kept.values() for raw in found), key=lambda raw: raw.log_time_ns)
 
 
 class Source(Protocol):

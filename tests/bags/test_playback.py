@@ -134,6 +134,16 @@ def test_as_many_latched_messages_come_first_as_a_late_listener_would_have_had(t
         assert numbers(bag, chosen(bag, start_s=8.0)) == [3, 4, 5]
 
 
+def test_what_was_latched_long_before_the_start_is_found(tmp_path: Path) -> None:
+    often = [("/often", 0.25 * number) for number in range(4000)]
+    spoken = [("/once", 0.0), ("/twice", 3.0), *often, ("/twice", 500.0), ("/often", 1000.0)]
+    two = OfferedQos(durability="transient_local", depth=2)
+    offers = {"/once": LATCHED, "/twice": two, "/often": two}
+    with open_bag(write(tmp_path / "bag", *spoken, offers=offers)) as bag:
+        found = numbers(bag, chosen(bag, start_s=999.9))
+    assert found == [0, 1, 2 + 4000, 2 + 3998, 2 + 3999, 2 + 4001]
+
+
 def test_of_a_topic_with_two_types_the_one_with_more_messages_is_played(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag", manifest=Manifest(version="0", wall_start_ns=1)) as writer:
         for kind, count in (("std_msgs/msg/String", 1), ("std_msgs/msg/UInt64", 2)):
