@@ -25,10 +25,10 @@ from rclpy.parameter import Parameter
 from rclpy.utilities import remove_ros_args
 
 from bags.parameters import PlayerParameters, pattern
-from bags.playback import NS_PER_S, Audience, Playback, Programme, programme
+from bags.playback import NS_PER_S, Audience, Playback, programme
 from bags.read_ahead import ReadAhead
 from bags.reader import Bag, RawMessage, open_bag
-from bags.topic_speaker import TopicSpeaker, installed_class
+from bags.topic_speaker import TopicSpeaker, installed
 from robustnav_msgs_py.conversions import clock_to_message
 from robustnav_msgs_py.errors import BadFileError, BadParameterError, RobustnavError
 from robustnav_msgs_py.values import ERROR
@@ -156,7 +156,7 @@ class Player(GraphNode[PlayerParameters]):
             raise BadParameterError("which bag is to be played? ros2 run bags player BAG, or -p bag:=BAG")
         self._bag = open_bag(Path(parameters.bag).expanduser())
         chosen = programme(self._bag, include=include, exclude=exclude, start_s=parameters.start_s)
-        self._programme = _installed(chosen, self._bag.path)
+        self._programme = installed(chosen, self._bag.path)
 
     def _begin(self, *, paused: bool) -> None:
         """Play from the start."""
@@ -263,22 +263,6 @@ class Player(GraphNode[PlayerParameters]):
         self._begin(paused=self._playback.paused)
         response.success, response.message = True, "playing from the start"
         return response
-
-
-def _installed(chosen: Programme, path: Path) -> Programme:
-    """What is chosen without the topics whose type is not installed here; raises where nothing remains."""
-    kept, left_out = [], list(chosen.left_out)
-    for row in chosen.topics:
-        try:
-            installed_class(row.type)
-        except BadFileError as error:
-            left_out.append((row.name, f"is left out, {error}"))
-        else:
-            kept.append(row)
-    if not kept:
-        topic, sentence = left_out[0]
-        raise BadFileError(f"nothing of {path} can be played; {topic!r} {sentence}")
-    return dataclasses.replace(chosen, topics=tuple(kept), left_out=tuple(left_out))
 
 
 def main() -> int:

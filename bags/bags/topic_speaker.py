@@ -2,6 +2,8 @@
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from rclpy.duration import Duration
@@ -16,6 +18,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from bags.bag_metadata import TopicRow
 from bags.definitions import TYPE_NAME
 from bags.offered_qos import INFINITE_NS, OfferedQos
+from bags.playback import Programme
 from bags.played_qos import offer_to_play
 from bags.reader import RawMessage
 from robustnav_msgs_py.errors import BadFileError
@@ -35,6 +38,22 @@ def installed_class(message_type: str) -> Any:
         return message_class(message_type)
     except (ImportError, AttributeError) as error:
         raise BadFileError(f"its type {message_type} is not installed here: {error}") from error
+
+
+def installed(chosen: Programme, path: Path) -> Programme:
+    """What is chosen without the topics whose type is not installed here; raises where nothing remains."""
+    kept, left_out = [], list(chosen.left_out)
+    for row in chosen.topics:
+        try:
+            installed_class(row.type)
+        except BadFileError as error:
+            left_out.append((row.name, f"is left out, {error}"))
+        else:
+            kept.append(row)
+    if not kept:
+        topic, sentence = left_out[0]
+        raise BadFileError(f"nothing of {path} can be played; {topic!r} {sentence}")
+    return replace(chosen, topics=tuple(kept), left_out=tuple(left_out))
 
 
 class TopicSpeaker:
