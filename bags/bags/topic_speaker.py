@@ -24,6 +24,9 @@ from bags.reader import RawMessage
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.graph.message_class import message_class
 
+# What is shorter is no message; an empty one would hold up all that follow it on its topic for good.
+CDR_HEADER_BYTES = 4
+
 RCLError = rclpy_implementation.RCLError
 # Every node speaks on these, and who listens to all nodes listens to the player before it plays.
 OF_EVERY_NODE = ("/rosout", "/parameter_events", "/diagnostics")
@@ -68,6 +71,7 @@ class TopicSpeaker:
         self, node: Node, topics: Sequence[TopicRow], *, depth: int, say: Callable[[str, str], None]
     ) -> None:
         self._node = node
+        self._say = say
         self._publishers: dict[str, Publisher] = {}
         for row in topics:
             try:
@@ -81,9 +85,12 @@ class TopicSpeaker:
         return tuple(self._publishers)
 
     def say(self, message: RawMessage) -> bool:
-        """Send a message; False where its topic is left out."""
+        """Send a message; False where its topic is left out, or where it is too short to be one."""
         publisher = self._publishers.get(message.topic)
         if publisher is None:
+            return False
+        if len(message.data) < CDR_HEADER_BYTES:
+            self._say(message.topic, f"a message of {len(message.data)} bytes, which is none, is left out")
             return False
         publisher.publish(message.data)
         return True

@@ -263,6 +263,21 @@ def test_names_and_types_that_are_none_are_left_out(stage: Stage, tmp_path: Path
     assert "its type 'os/path' is no type of ROS 2 messages" in told["problem /c"]
 
 
+def test_bytes_that_are_no_message_do_not_keep_back_the_others(stage: Stage, tmp_path: Path) -> None:
+    bag = tmp_path / "bag"
+    with BagWriter(bag, manifest=Manifest(version="0", wall_start_ns=1)) as writer:
+        channel = writer.add_topic("/words", message_definition("std_msgs/msg/String", PREFIXES))
+        for data in (b"", b"\0\1\0", serialize_message(text(0))):
+            writer.write(channel, log_time_ns=1, publish_time_ns=1, data=data)
+    heard = stage.hear(String, "/words")
+    player = stage.player(bag)
+    stage.until_end(player)
+    stage.until(lambda: heard == [serialize_message(text(0))])
+    told = player.health.status("", []).values
+    assert told["problem /words"] == "a message of 3 bytes, which is none, is left out (2 times)"
+    assert told["messages sent"] == "1"
+
+
 def test_topics_of_unlike_types_are_not_mapped_onto_one(
     tmp_path: Path, run: Callable[..., "subprocess.Popen[str]"]
 ) -> None:
