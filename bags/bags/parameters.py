@@ -1,7 +1,9 @@
-"""Parameters of the recorder."""
+"""Parameters of the recorder and of the player."""
 
+import re
 from dataclasses import dataclass
 
+from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.parameters import parameter
 
 
@@ -44,3 +46,41 @@ class RecorderParameters:
     closing_limit_s: float = parameter(
         30.0, "how long the end of the process waits for the bag to be closed", unit="s", low=1.0, high=600.0
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlayerParameters:
+    """What the player plays, how fast, and how it begins and ends."""
+
+    bag: str = parameter("", "folder of the bag, or an .mcap file; also the first argument of the command")
+    rate: float = parameter(1.0, "seconds of the bag in one second", low=0.01, high=100.0)
+    start_s: float = parameter(
+        0.0, "where to begin, counted from the begin of the bag", unit="s", low=0.0, high=1e7
+    )
+    loop: bool = parameter(False, "begin again at the end")
+    start_paused: bool = parameter(False, "begin with time standing; ~/pause and ~/step go on")
+    include: str = parameter(".*", "regular expression; recorded topics that match it wholly are played")
+    exclude: str = parameter("", "regular expression; topics that match it wholly are left out")
+    clock_hz: float = parameter(
+        0.0,
+        "how often the bag's time is said on /clock; 0: not at all; a /clock that is played comes first",
+        unit="Hz",
+        low=0.0,
+        high=1000.0,
+    )
+    wait_for_s: float = parameter(
+        1.0, "how long to wait for listeners before the first message", unit="s", low=0.0, high=600.0
+    )
+    depth: int = parameter(
+        1000, "messages of a volatile topic that are kept for slow listeners", low=1, high=100_000
+    )
+
+
+def pattern(name: str, expression: str) -> re.Pattern[str]:
+    """The regular expression that the parameter `name` holds; raises BadParameterError."""
+    try:
+        return re.compile(expression)
+    except re.error as error:
+        raise BadParameterError(
+            f"parameter {name!r} is {expression!r}; it is no regular expression: {error}"
+        ) from error

@@ -12,7 +12,6 @@ heard until then is still written, by a thread of its own. Cleaning up, shutting
 waits until the bag is closed.
 """
 
-import re
 import sys
 import time
 from dataclasses import replace
@@ -27,13 +26,12 @@ from rosgraph_msgs.msg import Clock
 
 from bags.manifest import Manifest
 from bags.parameter_survey import ParameterSurvey
-from bags.parameters import RecorderParameters
+from bags.parameters import RecorderParameters, pattern
 from bags.provenance import manifest_of_this_run
 from bags.recording import Recording, TopicCount
 from bags.topic_listener import Observer, TopicListener
 from bags.writer import BagWriter
 from robustnav_msgs_py.conversions import record_from_message, stamp_from_message
-from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.records import Episode
 from robustnav_msgs_py.values import ERROR, WARN
 from robustnav_nodes.graph.node import GraphNode
@@ -70,9 +68,9 @@ class Recorder(GraphNode[RecorderParameters]):
     def configure(self) -> None:
         """Check the parameters, and make the timers that run while the node is active."""
         parameters = self.parameters
-        _pattern("include", parameters.include)
-        _pattern("exclude", parameters.exclude)
-        _pattern("patient", parameters.patient)
+        pattern("include", parameters.include)
+        pattern("exclude", parameters.exclude)
+        pattern("patient", parameters.patient)
         self.every(parameters.discovery_period_s, self._discover, steady=True)
         self.every(FIGURES_PERIOD_S, self._show_figures, steady=True)
         self.every(MANIFEST_PERIOD_S, self._note_manifest, steady=True)
@@ -98,9 +96,9 @@ class Recorder(GraphNode[RecorderParameters]):
         self._listener = TopicListener(
             self,
             self._recording,
-            include=_pattern("include", parameters.include),
-            exclude=_pattern("exclude", parameters.exclude) if parameters.exclude else None,
-            patient=_pattern("patient", parameters.patient),
+            include=pattern("include", parameters.include),
+            exclude=pattern("exclude", parameters.exclude) if parameters.exclude else None,
+            patient=pattern("patient", parameters.patient),
             patience_s=parameters.patience_s,
             depth=parameters.depth,
             observer_of=self._observer_of,
@@ -229,15 +227,6 @@ def _bag_folder(parameters: RecorderParameters, now: datetime) -> Path:
     stem = f"run_{now:%Y%m%d_%H%M%S}"
     names = [stem, *(f"{stem}_{number}" for number in range(2, 100))]
     return next((folder / name for name in names if not (folder / name).exists()), folder / stem)
-
-
-def _pattern(name: str, expression: str) -> re.Pattern[str]:
-    try:
-        return re.compile(expression)
-    except re.error as error:
-        raise BadParameterError(
-            f"parameter {name!r} is {expression!r}; it is no regular expression: {error}"
-        ) from error
 
 
 def main() -> int:

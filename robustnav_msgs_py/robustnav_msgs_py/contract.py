@@ -71,11 +71,12 @@ class Service:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeRow:
-    """One executable of the graph and what it is for."""
+    """One executable and what it is for; one that is not `in_graph` is started by hand, beside the graph."""
 
     package: str
     executable: str
     purpose: str
+    in_graph: bool = True
 
 
 NODES = (
@@ -101,6 +102,7 @@ NODES = (
     ),
     NodeRow(package="bags", executable="recorder", purpose="every topic into an MCAP bag with a manifest"),
     NodeRow(package="robustnav_nodes", executable="manager", purpose="brings the nodes up and keeps them up"),
+    NodeRow(package="bags", executable="player", purpose="every topic of a bag, as recorded", in_graph=False),
 )
 
 TOPICS = (
@@ -108,9 +110,9 @@ TOPICS = (
         name="/clock",
         type="rosgraph_msgs/msg/Clock",
         qos=COMMAND,
-        speakers=("sim_bridge",),
+        speakers=("sim_bridge", "player"),
         listeners=(),
-        meaning="simulated time",
+        meaning="simulated time, or that of a bag that is played",
     ),
     Topic(
         name="camera/image_raw",
@@ -410,6 +412,14 @@ SERVICES = (
     Service(
         name="~/stop", type="std_srvs/srv/Trigger", server="planner", meaning="stop the search and the robot"
     ),
+    Service(name="~/pause", type="std_srvs/srv/SetBool", server="player", meaning="hold the time of the bag"),
+    Service(
+        name="~/step",
+        type="std_srvs/srv/Trigger",
+        server="player",
+        meaning="say the next message while paused",
+    ),
+    Service(name="~/reset", type="std_srvs/srv/Trigger", server="player", meaning="play from the start"),
     Service(name="~/startup", type="std_srvs/srv/Trigger", server="manager", meaning="bring every node up"),
     Service(
         name="~/shutdown",

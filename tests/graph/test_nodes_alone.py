@@ -22,13 +22,16 @@ from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.parameters import specs
 from robustnav_msgs_py.values import OK
 from robustnav_nodes.docs import PARAMETER_FILE
+from robustnav_nodes.graph.manager import MANAGED
 from robustnav_nodes.graph.one_process import node_class
 from robustnav_nodes.graph.processes import ProcessPlan
+from robustnav_nodes.graph.search_graph import RunPlan
 from tests.bench import Bench
 
 DEADLINE_S = 30.0
 OF_EVERY_NODE = {"/parameter_events", "/rosout"}
-ROWS = [row for row in contract.NODES if row.executable != "manager"]
+ALL = [row for row in contract.NODES if row.executable != "manager"]
+ROWS = [row for row in ALL if row.in_graph]
 
 
 @contextmanager
@@ -175,7 +178,7 @@ def test_an_executable_that_does_not_exist_is_a_sentence() -> None:
     assert "Traceback" not in output
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.executable)
+@pytest.mark.parametrize("row", ALL, ids=lambda row: row.executable)
 def test_the_shipped_parameter_file_fits_every_node_in_any_namespace(
     row: contract.NodeRow, bench: Bench
 ) -> None:
@@ -195,6 +198,12 @@ def test_the_shipped_parameter_file_fits_every_node_in_any_namespace(
     assert {spec.name for spec in specs(node.declaration) if spec.default != []} <= set(given)
     assert node.parameters == node.declaration()
     node.destroy_node()
+
+
+def test_a_run_of_the_graph_starts_no_node_that_is_started_by_hand() -> None:
+    started = {row.executable for row in RunPlan(bag=Path("bag"), parameters={}).nodes}
+    assert started == {row.executable for row in contract.NODES} - {"player"}
+    assert set(MANAGED) == started - {"manager"}
 
 
 def test_nodes_end_with_the_process_that_started_them(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from robustnav_msgs_py.parameters import parameter
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 
-MANAGED = [row.executable for row in contract.NODES if row.executable != "manager"]
+MANAGED = [row.executable for row in contract.NODES if row.in_graph and row.executable != "manager"]
 
 REFUSED_WAIT_S = 2.0
 

@@ -32,6 +32,7 @@ class GraphNode(LifecycleNode, Generic[P]):
     A subclass names its `executable` (its rows in the contract) and its `declaration`, and overrides any of
     `configure`, `activate`, `deactivate`, `cleanup`. What these raise fails the transition with a log line.
     One that must hear what was said before it was told to stop goes on hearing for `listen_on_s` seconds.
+    One whose work has an end sets `exit_code` when it is done; the process that runs it then leaves with it.
     Publishers, subscriptions, timers, services and workers made in `configure` are taken down at clean-up.
 
     Callbacks run in the executor's thread and only while the node is active. A RobustnavError raised there
@@ -44,6 +45,7 @@ class GraphNode(LifecycleNode, Generic[P]):
     executable: ClassVar[str]
     declaration: ClassVar[type]
     listen_on_s: ClassVar[float] = 0.0
+    exit_code: int | None = None
 
     def __init__(
         self, *, wiring: Callable[["GraphNode[Any]"], Wiring] = RosWiring, **node_options: Any

@@ -41,7 +41,7 @@ class RunPlan:
             left_out.add("simulated_user")
         if self.bag is None:
             left_out.add("recorder")
-        return tuple(row for row in contract.NODES if row.executable not in left_out)
+        return tuple(row for row in contract.NODES if row.in_graph and row.executable not in left_out)
 
     def node_parameters(self) -> dict[str, dict[str, Any]]:
         """What each node starts with, by executable."""

@@ -49,9 +49,9 @@ class Spinner:
         self._stopped.set()
         self.executor.create_task(lambda: None)
 
-    def spin(self) -> None:
-        """Run callbacks until `stop`."""
-        while not self._stopped.is_set() and rclpy.ok():
+    def spin(self, done: Callable[[], bool] = lambda: False) -> None:
+        """Run callbacks until `stop`, or until one of them has made `done` hold."""
+        while not self._stopped.is_set() and rclpy.ok() and not done():
             self.executor.spin_once(timeout_sec=SPIN_PERIOD_S)
 
     def listen(self, time_s: float) -> None:
@@ -112,6 +112,7 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[
 
     The nodes that were not told otherwise (`autostart`) are configured and activated; at the end they are
     shut down in reverse order, and those that listen on (the recorder) hear the last words of the others.
+    A node whose work is done (`exit_code`) ends it as a signal does, and its exit code is returned.
     """
     prepare_environment()
     try:
@@ -135,12 +136,12 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[
                 node.trigger_configure()
                 if node.state_id == State.PRIMARY_STATE_INACTIVE:
                     node.trigger_activate()
-        spinner.spin()
+        spinner.spin(lambda: any(node.exit_code is not None for node in nodes))
         for node in reversed(nodes):
             if not node.listen_on_s:
                 _shut_down(node)
         spinner.listen(max(node.listen_on_s for node in nodes))
-        return 0
+        return max(node.exit_code or 0 for node in nodes)
     except RobustnavError as error:
         print(f"robustnav: {error}", file=sys.stderr)
         return WRONG_USAGE if isinstance(error, BadParameterError) else 1
