@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Pose2D
 
 if TYPE_CHECKING:  # the simulator stands on this package
@@ -62,7 +63,9 @@ def sim_figures(seeds: Sequence[int]) -> SimFigures:
             else:
                 simulation.close()
         if large is None:
-            raise ValueError(f"none of the homes of seeds {list(seeds)} has {BODIES} bodies")
+            raise BadParameterError(
+                f"none of the hard homes of seeds {seeds[0]}..{seeds[-1]} has {BODIES} bodies: ask for more homes"
+            )
         poses = _poses(large)
         seconds = {
             (width, height, color): median(_pictures(large, width, height, poses, color=color))
