@@ -1,4 +1,4 @@
-"""`robustnav data homes` writes homes that it reads again, and says in a sentence what is wrong with others."""
+"""`robustnav data homes` writes homes that it reads again, and tells what is wrong with others."""
 
 from pathlib import Path
 

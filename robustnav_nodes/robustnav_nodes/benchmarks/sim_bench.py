@@ -64,7 +64,7 @@ def sim_figures(seeds: Sequence[int]) -> SimFigures:
                 simulation.close()
         if large is None:
             raise BadParameterError(
-                f"none of the hard homes of seeds {seeds[0]}..{seeds[-1]} has {BODIES} bodies: ask for more homes"
+                f"no hard home of seeds {seeds[0]}..{seeds[-1]} has {BODIES} bodies: ask for more homes"
             )
         poses = _poses(large)
         seconds = {
