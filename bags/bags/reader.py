@@ -8,9 +8,9 @@ from typing import Any, Self
 
 from bags.bag_metadata import BagMetadata, TopicRow, joined, read_metadata
 from bags.decoding import MessageDecoder
+from bags.file_writer import MANIFEST_RECORD
 from bags.manifest import Manifest, manifest_from_json
 from bags.mcap_file import FileChannel, McapFile
-from bags.writer import MANIFEST_RECORD
 from robustnav_msgs_py.errors import BadFileError
 
 

@@ -10,6 +10,7 @@ from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
 from bags.offered_qos import OfferedQos
 from bags.writer import BagWriter
+from robustnav_msgs_py.errors import RobustnavError
 
 # How long messages are gathered: a thread that wakes for each one costs more than writing it.
 GATHER_S = 0.05
@@ -43,13 +44,17 @@ class _Message:
     data: bytes
 
 
+class _Split:
+    """Stands in the queue where the bag is to go on in its next file."""
+
+
 class Recording:
     """Writes one bag from a thread of its own, so that whoever hears messages never waits for the disk.
 
-    `add_topic`, `put`, `update_manifest` and `finish` belong to the thread that hears; they never wait. At
-    most `queue_bytes` wait to be written: what comes while the queue is full is dropped and counted, per
-    topic. The bag is flushed every `flush_period_s`. When the disk fails, `failure` holds the sentence and
-    everything from then on counts as dropped.
+    `add_topic`, `put`, `split`, `update_manifest` and `finish` belong to the thread that hears; they never
+    wait. At most `queue_bytes` wait to be written: what comes while the queue is full is dropped and counted,
+    per topic. The bag is flushed every `flush_period_s`. When the disk fails, `failure` holds the sentence
+    and everything from then on counts as dropped.
 
     A bag that is gone on with is repaired first, in that thread: what is heard meanwhile waits in the queue,
     and `earlier` is None until it is done.
@@ -64,7 +69,7 @@ class Recording:
         self._flush_period_s = flush_period_s
         self._channels: list[_Channel] = []
         self._written_channels: list[int] = []
-        self._waiting: list[_Message] = []
+        self._waiting: list[_Message | _Split] = []
         self._waiting_bytes = 0
         self._finishing = False
         self._manifest: Manifest | None = None
@@ -100,6 +105,14 @@ class Recording:
             counted.size_bytes += len(data)
             self._waiting.append(_Message(channel, log_time_ns, data))
             self._waiting_bytes += len(data)
+            return True
+
+    def split(self) -> bool:
+        """Go on in the next file after what was put until now; False where nothing is written any more."""
+        with self._changed:
+            if self._finishing or self.failure:
+                return False
+            self._waiting.append(_Split())
             return True
 
     def update_manifest(self, manifest: Manifest) -> None:
@@ -160,13 +173,16 @@ class Recording:
         except Exception as error:
             self._fail(error)
 
-    def _write(self, batch: list[_Message]) -> None:
+    def _write(self, batch: list[_Message | _Split]) -> None:
         self._add_new_topics()
         for position, message in enumerate(batch):
             if self.failure:
                 self._give_up(batch[position:])
                 return
             try:
+                if isinstance(message, _Split):
+                    self._writer.split()
+                    continue
                 self._writer.write(
                     self._written_channels[message.channel],
                     log_time_ns=message.log_time_ns,
@@ -184,9 +200,11 @@ class Recording:
             added = self._channels[len(self._written_channels)]
             self._written_channels.append(self._writer.add_topic(added.topic, added.definition, added.offers))
 
-    def _give_up(self, messages: list[_Message]) -> None:
+    def _give_up(self, batch: list[_Message | _Split]) -> None:
         with self._changed:
-            for message in messages:
+            for message in batch:
+                if isinstance(message, _Split):
+                    continue
                 channel = self._channels[message.channel]
                 channel.messages -= 1
                 channel.size_bytes -= len(message.data)
@@ -194,7 +212,10 @@ class Recording:
                 self._waiting_bytes -= len(message.data)
 
     def _fail(self, error: Exception) -> None:
-        reason = error.strerror if isinstance(error, OSError) else repr(error)
+        if isinstance(error, OSError):
+            reason = error.strerror or repr(error)
+        else:
+            reason = str(error) if isinstance(error, RobustnavError) else repr(error)
         self.failure = self.failure or (
             f"the bag {self.folder} cannot be written any more: {reason}; what was flushed before is kept"
         )

@@ -22,6 +22,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String, UInt64
+from std_srvs.srv import Trigger
 
 from bags import topic_listener
 from bags.manifest import Manifest, NamedParameter
@@ -263,6 +264,46 @@ def test_a_bag_that_was_closed_is_left_alone_even_with_resume(graph: Graph) -> N
     assert recorder.state_id == State.PRIMARY_STATE_INACTIVE
     assert "was closed properly" in recorder.health.status("", []).message
     assert {path: path.read_bytes() for path in (graph.bags / "run").iterdir()} == before
+
+
+def test_a_bag_is_split_when_the_recorder_is_told_to(graph: Graph) -> None:
+    recorder = graph.recorder()
+    node = graph.node("talker")
+    publisher = node.create_publisher(UInt64, "numbers", 100)
+    split = node.create_client(Trigger, "recorder/split")
+    graph.until(lambda: publisher.get_subscription_count() == 1 and split.service_is_ready())
+    for value in range(20):
+        publisher.publish(UInt64(data=value))
+        graph.until(lambda expected=value + 1: graph.counted(recorder, "/numbers") == expected)
+        if value == 9:
+            asked = split.call_async(Trigger.Request())
+            graph.until(asked.done)
+            assert asked.result().success
+            assert "goes on in its next file" in asked.result().message
+    recorder.destroy_node()
+    for index in (0, 1):
+        with open_bag(graph.bags / "run" / f"run_{index}.mcap") as bag:
+            assert data_of(bag, "/numbers") == list(range(10 * index, 10 * index + 10))
+    with open_bag(graph.bags / "run") as bag:
+        assert data_of(bag, "/numbers") == list(range(20))
+
+
+def test_a_recorder_whose_files_have_a_limit_goes_on_in_the_next(graph: Graph) -> None:
+    recorder = graph.recorder(split_duration_s=0.5)
+    publisher = graph.node("talker").create_publisher(UInt64, "numbers", 100)
+    said = itertools.count()
+
+    def third_file_is_begun() -> bool:
+        publisher.publish(UInt64(data=next(said)))
+        return (graph.bags / "run" / "run_2.mcap").exists()
+
+    graph.until(lambda: publisher.get_subscription_count() == 1)
+    graph.until(third_file_is_begun)
+    recorder.destroy_node()
+    with open_bag(graph.bags / "run") as bag:
+        assert bag.cut == ""
+        numbers = data_of(bag, "/numbers")
+    assert numbers == list(range(len(numbers)))
 
 
 def test_topics_can_be_chosen(graph: Graph) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from bags.bag_metadata import read_metadata
 from bags.definitions import message_definition
 from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
@@ -100,6 +101,22 @@ def test_a_full_disk_is_said_and_all_that_is_missing_is_counted(tmp_path: Path, 
     assert (count.messages, count.dropped) == (10, 20)
     with open_bag(writer.folder) as bag:
         assert [recorded.message.data for recorded in bag.messages()] == list(range(10))
+
+
+def test_a_split_stands_where_it_was_asked_for(writer: SlowWriter) -> None:
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=0.1)
+    channel = recording.add_topic("/a", NUMBER)
+    for value in range(100):
+        if value in (30, 80):
+            assert recording.split()
+        assert recording.put(channel, value + 1, number(value))
+    writer.go.set()
+    recording.finish()
+    assert not recording.split()
+    assert recording.wait(WAIT_S)
+    assert [row.message_count for row in read_metadata(writer.folder).files] == [30, 50, 20]
+    with open_bag(writer.folder) as bag:
+        assert [recorded.message.data for recorded in bag.messages()] == list(range(100))
 
 
 def test_a_topic_without_messages_is_not_lost(writer: SlowWriter) -> None:

@@ -15,19 +15,17 @@ from rosidl_parser import definition as rosidl
 
 from bags.bag_metadata import read_metadata
 from bags.definitions import message_definition
+from bags.file_writer import LARGEST_MANIFEST_RECORD
 from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.offered_qos import OfferedQos
 from bags.reader import open_bag
-from bags.writer import LARGEST_MANIFEST_RECORD, BagWriter
+from bags.writer import BagWriter
 from robustnav_msgs_py import contract
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.graph.message_class import message_class
 
 PREFIXES = (Path(sys.prefix),)
-TYPES = sorted(
-    {row.type for row in contract.TOPICS if row.is_available}
-    | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"}
-)
+TYPES = sorted({row.type for row in contract.TOPICS} | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"})
 LATCHED = OfferedQos(durability="transient_local", history="unknown", depth=0)
 
 
