@@ -45,7 +45,7 @@ class RecorderParameters:
         1.0, "a run that is killed loses at most this much", unit="s", low=0.1, high=60.0
     )
     queue_size_bytes: int = parameter(
-        268_435_456,
+        134_217_728,
         "messages that wait to be written; more are dropped and counted",
         unit="B",
         low=1_048_576,

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -69,7 +70,7 @@ class Recording:
         self._flush_period_s = flush_period_s
         self._channels: list[_Channel] = []
         self._written_channels: list[int] = []
-        self._waiting: list[_Message | _Split] = []
+        self._waiting: deque[_Message | _Split] = deque()
         self._waiting_bytes = 0
         self._finishing = False
         self._manifest: Manifest | None = None
@@ -157,7 +158,7 @@ class Recording:
                 if not self._finishing:
                     self._changed.wait(GATHER_S)
                 finishing = self._finishing
-                batch, self._waiting = self._waiting, []
+                batch, self._waiting = self._waiting, deque()
                 manifest, self._manifest = self._manifest, None
             try:
                 if manifest is not None:
@@ -173,36 +174,43 @@ class Recording:
         except Exception as error:
             self._fail(error)
 
-    def _write(self, batch: list[_Message | _Split]) -> None:
+    def _write(self, batch: deque[_Message | _Split]) -> None:
+        """Write `batch` and take from it what is written, so that its memory is free at once."""
         self._add_new_topics()
-        for position, message in enumerate(batch):
+        while batch:
             if self.failure:
-                self._give_up(batch[position:])
+                self._give_up(batch)
                 return
             try:
-                if isinstance(message, _Split):
-                    self._writer.split()
-                    continue
-                self._writer.write(
-                    self._written_channels[message.channel],
-                    log_time_ns=message.log_time_ns,
-                    publish_time_ns=message.log_time_ns,
-                    data=message.data,
-                )
+                self._write_one(batch[0])
             except Exception:
-                self._give_up(batch[position:])
+                self._give_up(batch)
                 raise
-            with self._changed:
-                self._waiting_bytes -= len(message.data)
+            written = batch.popleft()
+            if isinstance(written, _Message):
+                with self._changed:
+                    self._waiting_bytes -= len(written.data)
+
+    def _write_one(self, message: _Message | _Split) -> None:
+        if isinstance(message, _Split):
+            self._writer.split()
+            return
+        self._writer.write(
+            self._written_channels[message.channel],
+            log_time_ns=message.log_time_ns,
+            publish_time_ns=message.log_time_ns,
+            data=message.data,
+        )
 
     def _add_new_topics(self) -> None:
         while len(self._written_channels) < len(self._channels):
             added = self._channels[len(self._written_channels)]
             self._written_channels.append(self._writer.add_topic(added.topic, added.definition, added.offers))
 
-    def _give_up(self, batch: list[_Message | _Split]) -> None:
+    def _give_up(self, batch: deque[_Message | _Split]) -> None:
         with self._changed:
-            for message in batch:
+            while batch:
+                message = batch.popleft()
                 if isinstance(message, _Split):
                     continue
                 channel = self._channels[message.channel]
