@@ -1,5 +1,6 @@
 """metadata.yaml of a bag folder, in the layout of rosbag2 Jazzy (version 9)."""
 
+import contextlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -84,8 +85,13 @@ class BagMetadata:
         """Write metadata.yaml into `folder`; a reader sees the old one or the new one, never half of it."""
         text = yaml.dump({ROOT_KEY: self._as_mapping()}, Dumper=DUMPER, sort_keys=False)
         unfinished = folder / (FILE_NAME + ".part")
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(folder / FILE_NAME)
+        try:
+            unfinished.write_text(text, encoding="utf-8")
+            unfinished.replace(folder / FILE_NAME)
+        except OSError:
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
+            raise
 
     def _as_mapping(self) -> dict[str, Any]:
         return {

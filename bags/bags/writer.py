@@ -92,8 +92,11 @@ class BagWriter:
         self._flushes = 0
         self._metadata_is_old = True
         _make_folder(folder, may_exist=resume)
-        self._file = self._next_file()
-        self.flush()
+        try:
+            self._file = self._next_file()
+            self.flush()
+        except OSError as error:
+            raise _cannot_be_written(folder, error) from error
 
     @property
     def path(self) -> Path:
