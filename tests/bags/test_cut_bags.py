@@ -149,7 +149,7 @@ def test_a_missing_bag_is_refused(tmp_path: Path) -> None:
 
 def test_a_folder_without_metadata_is_refused(whole: Path, tmp_path: Path) -> None:
     (tmp_path / "b_0.mcap").write_bytes((whole / "numbers_0.mcap").read_bytes())
-    with pytest.raises(BadFileError, match=r"has no metadata\.yaml.*open that file itself"):
+    with pytest.raises(BadFileError, match=r"has no metadata\.yaml.*it holds b_0\.mcap: open one of these"):
         open_bag(tmp_path)
 
 
