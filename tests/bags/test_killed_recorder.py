@@ -24,9 +24,13 @@ MOST_MISSING_S = 2.0
 TOPIC = "words"
 
 
-def word(number: int) -> str:
-    """Some 20 kB that begin with a number and cannot be compressed much: several chunks a second."""
-    return f"{number} " + random.Random(number).randbytes(10_000).hex()
+# Large words fill chunks, which are written at once; small ones wait in theirs for the flush.
+LARGE, SMALL = 10_000, 10
+
+
+def word(number: int, random_bytes: int) -> str:
+    """A text that begins with a number and cannot be compressed much."""
+    return f"{number} " + random.Random(number).randbytes(random_bytes).hex()
 
 
 class Speaker:
@@ -34,6 +38,7 @@ class Speaker:
 
     def __init__(self) -> None:
         self.said_s: list[float] = []
+        self.word_bytes = LARGE
         self._node = rclpy.create_node("talker")
         self._publisher: Publisher = self._node.create_publisher(String, TOPIC, 100)
         self._executor: Executor = EventsExecutor()
@@ -49,7 +54,7 @@ class Speaker:
             assert time.monotonic() < deadline, "what the test waits for did not come"
             if self.is_heard:
                 self.said_s.append(time.monotonic())
-                self._publisher.publish(String(data=word(len(self.said_s) - 1)))
+                self._publisher.publish(String(data=word(len(self.said_s) - 1, self.word_bytes)))
             self._executor.spin_once(timeout_sec=0.01)
 
     def close(self) -> None:
@@ -100,10 +105,13 @@ def assert_little_is_missing(folder: Path, speaker: Speaker, killed_s: float, ma
         assert reader.message_count == total == sum(1 for _ in reader.messages())
 
 
-@pytest.mark.parametrize(("after_s", "split_s"), [(0.4, 0.0), (1.6, 0.0), (1.9, 0.5)])
+@pytest.mark.parametrize(
+    ("after_s", "split_s", "word_bytes"), [(0.4, 0.0, LARGE), (1.9, 0.0, SMALL), (1.9, 0.5, LARGE)]
+)
 def test_a_kill_costs_less_than_two_seconds(
-    tmp_path: Path, speaker: Speaker, manifest: Manifest, after_s: float, split_s: float
+    tmp_path: Path, speaker: Speaker, manifest: Manifest, after_s: float, split_s: float, word_bytes: int
 ) -> None:
+    speaker.word_bytes = word_bytes
     killed_s = record_and_kill(speaker, tmp_path / "run", after_s, split_s)
     assert_little_is_missing(tmp_path / "run", speaker, killed_s, manifest)
 
@@ -115,5 +123,6 @@ def test_a_kill_at_any_moment_costs_less_than_two_seconds(
 ) -> None:
     chance = random.Random(seed)
     split_s = chance.choice((0.0, 0.3))
+    speaker.word_bytes = chance.choice((LARGE, SMALL))
     killed_s = record_and_kill(speaker, tmp_path / "run", chance.uniform(0.0, 4.0), split_s)
     assert_little_is_missing(tmp_path / "run", speaker, killed_s, manifest)

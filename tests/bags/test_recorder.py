@@ -306,6 +306,43 @@ def test_a_recorder_whose_files_have_a_limit_goes_on_in_the_next(graph: Graph) -
     assert numbers == list(range(len(numbers)))
 
 
+def test_what_is_dropped_is_told_for_its_topic(graph: Graph) -> None:
+    recorder = graph.recorder(queue_size_bytes=1_048_576)
+    node = graph.node("talker")
+    large = node.create_publisher(String, "large", 10)
+    small = node.create_publisher(String, "small", 10)
+    told: dict[str, str] = {}
+
+    def hear(message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name == "/recorder":
+                told.update({pair.key: pair.value for pair in status.values})
+                told["message"] = status.message
+
+    node.create_subscription(DiagnosticArray, "/diagnostics", hear, 10)
+    graph.until(lambda: large.get_subscription_count() == 1 and small.get_subscription_count() == 1)
+    for _ in range(3):
+        large.publish(String(data="x" * 2_000_000))  # larger than all that may wait
+        small.publish(String(data="x"))
+    graph.until(lambda: "3 dropped" in told.get("/large", "") and "3 messages" in told.get("/small", ""))
+    assert told["/large"] == "0 messages, 0 bytes, 3 dropped"
+    assert told["/small"].endswith(" bytes, 0 dropped")
+    assert told["dropped"] == "3"
+    assert told["message"].startswith("3 messages came while the disk was behind, and are not in the bag")
+    recorder.destroy_node()
+    with open_bag(graph.bags / "run") as bag:
+        assert data_of(bag, "/small") == ["x"] * 3
+        assert data_of(bag, "/large") == []
+
+
+def test_a_folder_that_cannot_be_written_is_refused(graph: Graph) -> None:
+    graph.bags.write_text("a file, not a folder")
+    recorder = graph.recorder()
+    assert recorder.state_id == State.PRIMARY_STATE_INACTIVE
+    told = recorder.health.status("", []).message
+    assert told == f"a bag cannot be written to {graph.bags / 'run'}: Not a directory"
+
+
 def test_topics_can_be_chosen(graph: Graph) -> None:
     recorder = graph.recorder(include="/a.*|/b", exclude="/a/secret")
     node = graph.node("talker")
