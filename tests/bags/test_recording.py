@@ -87,6 +87,31 @@ def test_what_does_not_fit_the_queue_is_dropped_and_counted(writer: SlowWriter) 
         assert [recorded.message.data for recorded in bag.messages()] == taken
 
 
+def test_what_is_written_is_no_longer_held(tmp_path: Path, manifest: Manifest) -> None:
+    """Or a recorder that is behind would hold what it writes beside a queue that is full again."""
+    said = [number(value) for value in range(10)]
+    unheld = sys.getrefcount(said[0])
+    references: list[int] = []
+
+    class Watched(SlowWriter):
+        """A writer that looks who holds the first message."""
+
+        def write(self, channel: int, **message: Any) -> None:
+            super().write(channel, **message)
+            references.append(sys.getrefcount(said[0]))
+
+    writer = Watched(tmp_path / "bag", manifest=manifest)
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=1.0)
+    channel = recording.add_topic("/a", NUMBER)
+    for at, data in enumerate(said):
+        recording.put(channel, at + 1, data)
+    writer.go.set()
+    recording.finish()
+    assert recording.wait(WAIT_S)
+    assert references[0] > unheld
+    assert references[2:] == [unheld] * 8  # one more is in hand
+
+
 def test_a_full_disk_is_said_and_all_that_is_missing_is_counted(tmp_path: Path, manifest: Manifest) -> None:
     writer = SlowWriter(tmp_path / "bag", manifest=manifest, fails_at=10)
     writer.go.set()

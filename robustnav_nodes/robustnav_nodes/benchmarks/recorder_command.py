@@ -61,7 +61,7 @@ def recorder_command(
 
 
 def _show(console: Console, rows: "Sequence[RecorderRow]") -> None:
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
     table.add_column("load", no_wrap=True)
     for name in ("s", "MB/s", "messages/s", "missing", "dropped", "CPU", "RSS MB", "bag MB"):
         table.add_column(name, justify="right", no_wrap=True)
