@@ -6,7 +6,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
 
-from bags.bag_metadata import BagMetadata, CustomEntry, FileRow, TopicRow, joined
+from bags.bag_metadata import BagMetadata, CustomEntry, FileRow, TopicRow, joined, read_metadata
 from bags.definitions import MessageDefinition
 from bags.earlier_files import (
     CLOSED_ENTRY,
@@ -85,6 +85,7 @@ class BagWriter:
         self._split = split or SplitRule()
         self._earlier_paths = find_earlier_files(folder) if resume and folder.is_dir() else ()
         self._earlier = None if self._earlier_paths else EarlierFiles()
+        self._told_topics = _told_topics(folder) if self._earlier_paths else ()
         self._finished_files: tuple[FileRow, ...] = ()
         self._finished_topics: tuple[TopicRow, ...] = ()
         self._topics: list[_Topic] = []
@@ -111,8 +112,12 @@ class BagWriter:
     def add_topic(self, topic: str, definition: MessageDefinition, offers: Sequence[OfferedQos] = ()) -> int:
         """Add a topic and return the channel to write its messages with.
 
-        A topic that changes its type is added once for each type.
+        A topic that changes its type is added once for each type. What earlier files say of its QoS is said
+        again: rosbags passes over what a file holds of a topic with other QoS than metadata.yaml.
         """
+        rows = self._told_topics if self._earlier is None else self._earlier.topics
+        of_topic = (row.offers for row in rows if (row.name, row.type) == (topic, definition.type))
+        offers = next(of_topic, tuple(offers))
         self._topics.append(_Topic(name=topic, definition=definition, offers=tuple(offers)))
         self._metadata_is_old = True
         return self._file.add_topic(topic, definition, offers)
@@ -233,6 +238,14 @@ def _essentials(manifest: Manifest, *, closed: bool) -> tuple[CustomEntry, ...]:
         CLOSED_ENTRY: "yes" if closed else "no",
     }
     return tuple(CustomEntry(name=name, text=text) for name, text in told.items() if text)
+
+
+def _told_topics(folder: Path) -> tuple[TopicRow, ...]:
+    """Topics of a bag as its killed recorder told them; its files may be cut, and take longer to ask."""
+    try:
+        return read_metadata(folder).topics
+    except BadFileError:  # it was killed before it wrote any
+        return ()
 
 
 def _make_folder(folder: Path, *, may_exist: bool) -> None:
