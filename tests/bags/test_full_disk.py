@@ -88,6 +88,7 @@ class Room:
         if self.process is not None and self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+        self.executor.shutdown()  # it holds the nodes, which would stay in the graph
         self.node.destroy_node()
 
     def _hear(self, message: DiagnosticArray) -> None:

@@ -58,6 +58,7 @@ class Speaker:
             self._executor.spin_once(timeout_sec=0.01)
 
     def close(self) -> None:
+        self._executor.shutdown()  # it holds the nodes, which would stay in the graph
         self._node.destroy_node()
 
 

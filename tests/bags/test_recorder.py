@@ -107,6 +107,7 @@ class Graph:
         return sum(count.messages for count in recorder.counts() if count.topic == topic)
 
     def close(self) -> None:
+        self.executor.shutdown()  # it holds the nodes, which would stay in the graph
         for node in reversed(self.nodes):
             node.destroy_node()
         for process in self.processes:
