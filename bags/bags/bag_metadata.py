@@ -1,5 +1,6 @@
 """metadata.yaml of a bag folder, in the layout of rosbag2 Jazzy (version 9)."""
 
+import contextlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from robustnav_msgs_py.errors import BadFileError
 FILE_NAME = "metadata.yaml"
 ROOT_KEY = "rosbag2_bagfile_information"
 LAYOUT_VERSION = 9
+MOST_NAMED = 3  # things to open instead of what is no bag
 # The C versions are ten times faster; they are missing where PyYAML was built without libyaml.
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -84,8 +86,13 @@ class BagMetadata:
         """Write metadata.yaml into `folder`; a reader sees the old one or the new one, never half of it."""
         text = yaml.dump({ROOT_KEY: self._as_mapping()}, Dumper=DUMPER, sort_keys=False)
         unfinished = folder / (FILE_NAME + ".part")
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(folder / FILE_NAME)
+        try:
+            unfinished.write_text(text, encoding="utf-8")
+            unfinished.replace(folder / FILE_NAME)
+        except OSError:
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
+            raise
 
     def _as_mapping(self) -> dict[str, Any]:
         return {
@@ -143,17 +150,27 @@ def read_metadata(folder: Path) -> BagMetadata:
     try:
         document = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)  # noqa: S506 (it is a safe loader)
     except FileNotFoundError as error:
-        raise BadFileError(
-            f"{folder} has no {FILE_NAME}, so it is no bag; if it holds an .mcap file, open that file itself"
-        ) from error
+        raise BadFileError(f"{folder} has no {FILE_NAME}, so it is no bag{_advice(folder)}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise BadFileError(f"{path} cannot be read: {error}") from error
     except yaml.YAMLError as error:
         raise BadFileError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(document, dict) or ROOT_KEY not in document:
+        raise BadFileError(f"{path} is not the metadata of a bag: it does not begin with {ROOT_KEY}")
     try:
         return _from_mapping(document[ROOT_KEY])
     except (KeyError, TypeError, ValueError) as error:
         raise BadFileError(f"{path} is not the metadata of a bag: {error!r} in what it says") from error
+
+
+def _advice(folder: Path) -> str:
+    """What to open instead of a folder that is no bag."""
+    bags = sorted(path.parent.name for path in folder.glob(f"*/{FILE_NAME}"))
+    found = sorted(path.name for path in folder.glob("*.mcap")) + bags
+    if not found:
+        return ", and it holds none"
+    others = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+    return f"; it holds {', '.join(found[:MOST_NAMED])}{others}: open one of these itself"
 
 
 def _from_mapping(mapping: dict[str, Any]) -> BagMetadata:

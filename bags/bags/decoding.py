@@ -39,6 +39,10 @@ class MessageDecoder:
             raise BadFileError(f"nothing defines {message_type!r}, so its messages cannot be decoded")
         try:
             return types.deserialize_cdr(data, message_type)
+        except KeyError as error:  # the definition names another type that nothing defines
+            raise BadFileError(
+                f"nothing defines {error.args[0]!r}, which {message_type!r} holds, so it cannot be decoded"
+            ) from error
         except (SerdeError, IndexError, MemoryError) as error:
             raise BadFileError(f"{len(data)} bytes are no message of type {message_type}: {error}") from error
 

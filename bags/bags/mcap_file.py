@@ -45,10 +45,14 @@ class FileChannel:
     @property
     def row(self) -> TopicRow:
         """The topic as metadata.yaml tells it; raises BadFileError where its QoS cannot be read."""
+        try:
+            offers = offers_from_text(self.offered_qos)
+        except BadFileError as error:
+            raise BadFileError(f"what stands in the file about {self.topic!r} is damaged: {error}") from error
         return TopicRow(
             name=self.topic,
             type=self.type,
-            offers=offers_from_text(self.offered_qos),
+            offers=offers,
             type_hash=self.type_hash,
             message_count=self.message_count,
         )

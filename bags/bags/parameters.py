@@ -29,11 +29,25 @@ class RecorderParameters:
     chunk_size_bytes: int = parameter(
         1_048_576, "size at which a chunk is compressed and written", unit="B", low=1024, high=268_435_456
     )
+    split_size_bytes: int = parameter(
+        0,
+        "the bag goes on in a next file when one is this large, to within a chunk; 0: never",
+        unit="B",
+        low=0,
+        high=1_000_000_000_000,
+    )
+    split_duration_s: float = parameter(
+        0.0, "the bag goes on in a next file when one is this long; 0: never", unit="s", low=0.0, high=86400.0
+    )
+    repeat_latched: bool = parameter(
+        False,
+        "begin each further file with what latched topics said last; played as one bag, it is said twice",
+    )
     flush_period_s: float = parameter(
         1.0, "a run that is killed loses at most this much", unit="s", low=0.1, high=60.0
     )
     queue_size_bytes: int = parameter(
-        268_435_456,
+        134_217_728,
         "messages that wait to be written; more are dropped and counted",
         unit="B",
         low=1_048_576,

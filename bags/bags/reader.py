@@ -8,9 +8,9 @@ from typing import Any, Self
 
 from bags.bag_metadata import BagMetadata, TopicRow, joined, read_metadata
 from bags.decoding import MessageDecoder
+from bags.file_writer import MANIFEST_RECORD
 from bags.manifest import Manifest, manifest_from_json
 from bags.mcap_file import FileChannel, McapFile
-from bags.writer import MANIFEST_RECORD
 from robustnav_msgs_py.errors import BadFileError
 
 
@@ -122,14 +122,21 @@ class Bag:
         """Like `raw_messages`, decoded; raises BadFileError also where a message is not of its type."""
         for channel in self._channels():
             if topics is None or channel.topic in topics:
-                self._decoder.add(channel.type, channel.definition, channel.definition_encoding)
+                try:
+                    self._decoder.add(channel.type, channel.definition, channel.definition_encoding)
+                except BadFileError as error:
+                    raise BadFileError(f"{channel.topic!r} in {self.path}: {error}") from error
         for raw in self.raw_messages(topics, start_ns=start_ns, stop_ns=stop_ns):
+            try:
+                message = self._decoder.decode(raw.type, raw.data)
+            except BadFileError as error:
+                raise BadFileError(f"{raw.topic!r} in {self.path}: {error}") from error
             yield RecordedMessage(
                 topic=raw.topic,
                 type=raw.type,
                 log_time_ns=raw.log_time_ns,
                 publish_time_ns=raw.publish_time_ns,
-                message=self._decoder.decode(raw.type, raw.data),
+                message=message,
             )
 
     def close(self) -> None:

@@ -4,6 +4,7 @@
 |---|---|
 | hears | every topic that has a publisher, as soon as it appears, hidden ones too |
 | says | `/diagnostics`: messages, bytes and drops of each topic |
+| serves | `~/split`: the bag goes on in its next file |
 | asks | every node's `list_parameters` and `get_parameters`, for the manifest |
 
 It records while it is active. With `resume` it goes on in the bag of its name that a killed recorder left:
@@ -30,8 +31,9 @@ from bags.parameters import RecorderParameters, pattern
 from bags.provenance import manifest_of_this_run
 from bags.recording import Recording, TopicCount
 from bags.topic_listener import Observer, TopicListener
-from bags.writer import BagWriter
+from bags.writer import BagWriter, SplitRule
 from robustnav_msgs_py.conversions import record_from_message, stamp_from_message
+from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.records import Episode
 from robustnav_msgs_py.values import ERROR, WARN
 from robustnav_nodes.graph.node import GraphNode
@@ -71,6 +73,7 @@ class Recorder(GraphNode[RecorderParameters]):
         pattern("include", parameters.include)
         pattern("exclude", parameters.exclude)
         pattern("patient", parameters.patient)
+        self.serve("~/split", self._split)
         self.every(parameters.discovery_period_s, self._discover, steady=True)
         self.every(FIGURES_PERIOD_S, self._show_figures, steady=True)
         self.every(MANIFEST_PERIOD_S, self._note_manifest, steady=True)
@@ -86,6 +89,11 @@ class Recorder(GraphNode[RecorderParameters]):
             manifest=self._manifest,
             chunk_bytes=parameters.chunk_size_bytes,
             resume=parameters.resume,
+            split=SplitRule(
+                size_bytes=parameters.split_size_bytes,
+                duration_s=parameters.split_duration_s,
+                repeat_latched=parameters.repeat_latched,
+            ),
         )
         self.folder_of_bag = writer.folder
         self._recording = Recording(
@@ -140,6 +148,14 @@ class Recorder(GraphNode[RecorderParameters]):
         if known != self._noted:
             self._noted = known
             self._recording.update_manifest(known)
+
+    def _split(self, _request: Any, response: Any) -> Any:
+        """Answers at once; what was heard until now is still written to the file that ends."""
+        if self._recording is None or not self._recording.split():
+            raise BadFileError("nothing is being written, so there is no file to end; see /diagnostics")
+        response.success = True
+        response.message = f"{self._recording.folder} goes on in its next file"
+        return response
 
     def _discover(self) -> None:
         if self._listener is not None and self._survey is not None:

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
 from bags.offered_qos import OfferedQos
 from bags.writer import BagWriter
+from robustnav_msgs_py.errors import RobustnavError
 
 # How long messages are gathered: a thread that wakes for each one costs more than writing it.
 GATHER_S = 0.05
@@ -43,13 +45,17 @@ class _Message:
     data: bytes
 
 
+class _Split:
+    """Stands in the queue where the bag is to go on in its next file."""
+
+
 class Recording:
     """Writes one bag from a thread of its own, so that whoever hears messages never waits for the disk.
 
-    `add_topic`, `put`, `update_manifest` and `finish` belong to the thread that hears; they never wait. At
-    most `queue_bytes` wait to be written: what comes while the queue is full is dropped and counted, per
-    topic. The bag is flushed every `flush_period_s`. When the disk fails, `failure` holds the sentence and
-    everything from then on counts as dropped.
+    `add_topic`, `put`, `split`, `update_manifest` and `finish` belong to the thread that hears; they never
+    wait. At most `queue_bytes` wait to be written: what comes while the queue is full is dropped and counted,
+    per topic. The bag is flushed every `flush_period_s`. When the disk fails, `failure` holds the sentence
+    and everything from then on counts as dropped.
 
     A bag that is gone on with is repaired first, in that thread: what is heard meanwhile waits in the queue,
     and `earlier` is None until it is done.
@@ -64,7 +70,7 @@ class Recording:
         self._flush_period_s = flush_period_s
         self._channels: list[_Channel] = []
         self._written_channels: list[int] = []
-        self._waiting: list[_Message] = []
+        self._waiting: deque[_Message | _Split] = deque()
         self._waiting_bytes = 0
         self._finishing = False
         self._manifest: Manifest | None = None
@@ -100,6 +106,14 @@ class Recording:
             counted.size_bytes += len(data)
             self._waiting.append(_Message(channel, log_time_ns, data))
             self._waiting_bytes += len(data)
+            return True
+
+    def split(self) -> bool:
+        """Go on in the next file after what was put until now; False where nothing is written any more."""
+        with self._changed:
+            if self._finishing or self.failure:
+                return False
+            self._waiting.append(_Split())
             return True
 
     def update_manifest(self, manifest: Manifest) -> None:
@@ -144,7 +158,7 @@ class Recording:
                 if not self._finishing:
                     self._changed.wait(GATHER_S)
                 finishing = self._finishing
-                batch, self._waiting = self._waiting, []
+                batch, self._waiting = self._waiting, deque()
                 manifest, self._manifest = self._manifest, None
             try:
                 if manifest is not None:
@@ -160,33 +174,45 @@ class Recording:
         except Exception as error:
             self._fail(error)
 
-    def _write(self, batch: list[_Message]) -> None:
+    def _write(self, batch: deque[_Message | _Split]) -> None:
+        """Write `batch` and take from it what is written, so that its memory is free at once."""
         self._add_new_topics()
-        for position, message in enumerate(batch):
+        while batch:
             if self.failure:
-                self._give_up(batch[position:])
+                self._give_up(batch)
                 return
             try:
-                self._writer.write(
-                    self._written_channels[message.channel],
-                    log_time_ns=message.log_time_ns,
-                    publish_time_ns=message.log_time_ns,
-                    data=message.data,
-                )
+                self._write_one(batch[0])
             except Exception:
-                self._give_up(batch[position:])
+                self._give_up(batch)
                 raise
-            with self._changed:
-                self._waiting_bytes -= len(message.data)
+            written = batch.popleft()
+            if isinstance(written, _Message):
+                with self._changed:
+                    self._waiting_bytes -= len(written.data)
+
+    def _write_one(self, message: _Message | _Split) -> None:
+        if isinstance(message, _Split):
+            self._writer.split()
+            return
+        self._writer.write(
+            self._written_channels[message.channel],
+            log_time_ns=message.log_time_ns,
+            publish_time_ns=message.log_time_ns,
+            data=message.data,
+        )
 
     def _add_new_topics(self) -> None:
         while len(self._written_channels) < len(self._channels):
             added = self._channels[len(self._written_channels)]
             self._written_channels.append(self._writer.add_topic(added.topic, added.definition, added.offers))
 
-    def _give_up(self, messages: list[_Message]) -> None:
+    def _give_up(self, batch: deque[_Message | _Split]) -> None:
         with self._changed:
-            for message in messages:
+            while batch:
+                message = batch.popleft()
+                if isinstance(message, _Split):
+                    continue
                 channel = self._channels[message.channel]
                 channel.messages -= 1
                 channel.size_bytes -= len(message.data)
@@ -194,7 +220,10 @@ class Recording:
                 self._waiting_bytes -= len(message.data)
 
     def _fail(self, error: Exception) -> None:
-        reason = error.strerror if isinstance(error, OSError) else repr(error)
+        if isinstance(error, OSError):
+            reason = error.strerror or repr(error)
+        else:
+            reason = str(error) if isinstance(error, RobustnavError) else repr(error)
         self.failure = self.failure or (
             f"the bag {self.folder} cannot be written any more: {reason}; what was flushed before is kept"
         )

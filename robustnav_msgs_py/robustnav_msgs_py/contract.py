@@ -428,6 +428,12 @@ SERVICES = (
         meaning="take every node down, last one first",
     ),
     Service(
+        name="~/split",
+        type="std_srvs/srv/Trigger",
+        server="recorder",
+        meaning="go on in the bag's next file",
+    ),
+    Service(
         name="plan/get_plan",
         type="nav_msgs/srv/GetPlan",
         server="planner",

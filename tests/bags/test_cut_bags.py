@@ -1,21 +1,25 @@
 """Bags of runs that were killed, files that were cut or damaged, and files that are no bags."""
 
 import random
+import re
 import signal
 import subprocess
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from bags.bag_metadata import read_metadata
 from bags.definitions import message_definition
+from bags.info import bag_info
 from bags.manifest import Manifest
+from bags.mcap_scan import MAGIC, whole_records
 from bags.reader import open_bag
 from bags.writer import BagWriter
 from robustnav_msgs_py.errors import BadFileError
+from tests.bags.conftest import Corridor
 
 PREFIXES = (Path(sys.prefix),)
 COUNT = 200
@@ -89,6 +93,36 @@ def test_a_file_cut_anywhere_gives_what_is_whole_or_a_sentence(whole: Path, tmp_
     assert kept_before == COUNT
 
 
+def test_a_bag_cut_at_random_gives_what_was_whole_or_a_sentence(
+    search_bag: Callable[..., Path], corridor: Corridor
+) -> None:
+    folder = search_bag(corridor.flat, corridor.told, chunk_bytes=4096)
+    (path,) = folder.glob("*.mcap")
+    content = path.read_bytes()
+    with open_bag(folder) as bag:
+        everything, manifest = list(bag.raw_messages()), bag.manifest
+    with path.open("rb") as stream:
+        ends = [
+            (whole.end, sum(map(len, whole.contents.messages.values())))
+            for whole in whole_records(stream)
+            if whole.contents is not None
+        ]
+    assert len(ends) > 10
+    for size in random.Random(7).sample(range(len(content)), 200):
+        path.write_bytes(content[:size])
+        expected = sum(count for end, count in ends if end <= size)
+        if size < len(MAGIC):
+            with pytest.raises(BadFileError, match=re.escape(str(path))):
+                open_bag(folder)
+            continue
+        with open_bag(folder) as bag:
+            assert list(bag.raw_messages()) == everything[:expected]
+            info = bag_info(bag)
+        assert info.message_count == expected
+        assert str(path) in info.cut
+        assert info.manifest == manifest or expected == 0
+
+
 def test_a_file_with_any_byte_wrong_gives_numbers_or_a_sentence(whole: Path, tmp_path: Path) -> None:
     content = (whole / "numbers_0.mcap").read_bytes()
     path = tmp_path / "wrong.mcap"
@@ -149,7 +183,7 @@ def test_a_missing_bag_is_refused(tmp_path: Path) -> None:
 
 def test_a_folder_without_metadata_is_refused(whole: Path, tmp_path: Path) -> None:
     (tmp_path / "b_0.mcap").write_bytes((whole / "numbers_0.mcap").read_bytes())
-    with pytest.raises(BadFileError, match=r"has no metadata\.yaml.*open that file itself"):
+    with pytest.raises(BadFileError, match=r"has no metadata\.yaml.*it holds b_0\.mcap: open one of these"):
         open_bag(tmp_path)
 
 

@@ -16,6 +16,7 @@ from bags.definitions import message_definition
 from bags.info import bag_info
 from bags.manifest import Manifest
 from bags.metrics import search_metrics
+from bags.offered_qos import OfferedQos
 from bags.picture import draw_search
 from bags.reader import open_bag
 from bags.writer import BagWriter
@@ -90,6 +91,30 @@ def test_a_bag_that_was_killed_twice_is_one_bag(left: Path, tmp_path: Path, mani
         assert reader.message_count == 200
         assert {topic: info.msgcount for topic, info in reader.topics.items()} == counts
         assert [data for _, _, data in reader.messages()] == [number(value) for value in range(200)]
+
+
+@pytest.mark.parametrize("joined_first", [True, False])
+def test_other_readers_get_all_of_a_topic_whose_publishers_changed(
+    tmp_path: Path, manifest: Manifest, joined_first: bool
+) -> None:
+    """rosbags passes over, without a word, what a file holds of a topic with other QoS than metadata.yaml."""
+    first = BagWriter(tmp_path / "alive" / "bag", manifest=manifest)
+    channel = first.add_topic("/a", NUMBER, [OfferedQos()])
+    first.write(channel, log_time_ns=1, publish_time_ns=1, data=number(0))
+    left = killed(first, tmp_path)
+    with BagWriter(left, manifest=manifest, resume=True) as second:
+        if joined_first:
+            second.join_earlier_files()
+        channels = [second.add_topic("/a", NUMBER, [OfferedQos(), OfferedQos(depth=7)])]
+        channels.append(second.add_topic("/b", NUMBER, [OfferedQos(depth=7)]))
+        for value in (1, 2):
+            now_ns = value + 1
+            second.write(channels[value - 1], log_time_ns=now_ns, publish_time_ns=now_ns, data=number(value))
+    assert numbers(left) == [0, 1, 2]
+    with Reader(left) as reader:
+        assert [data for _, _, data in reader.messages()] == [number(value) for value in range(3)]
+    rows = {row.name: row.offers for row in read_metadata(left).topics}
+    assert rows == {"/a": (OfferedQos(),), "/b": (OfferedQos(depth=7),)}
 
 
 def test_a_recorder_killed_before_it_repaired_leaves_that_to_the_next(

@@ -22,6 +22,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String, UInt64
+from std_srvs.srv import Trigger
 
 from bags import topic_listener
 from bags.manifest import Manifest, NamedParameter
@@ -106,6 +107,7 @@ class Graph:
         return sum(count.messages for count in recorder.counts() if count.topic == topic)
 
     def close(self) -> None:
+        self.executor.shutdown()  # it holds the nodes, which would stay in the graph
         for node in reversed(self.nodes):
             node.destroy_node()
         for process in self.processes:
@@ -265,6 +267,83 @@ def test_a_bag_that_was_closed_is_left_alone_even_with_resume(graph: Graph) -> N
     assert {path: path.read_bytes() for path in (graph.bags / "run").iterdir()} == before
 
 
+def test_a_bag_is_split_when_the_recorder_is_told_to(graph: Graph) -> None:
+    recorder = graph.recorder()
+    node = graph.node("talker")
+    publisher = node.create_publisher(UInt64, "numbers", 100)
+    split = node.create_client(Trigger, "recorder/split")
+    graph.until(lambda: publisher.get_subscription_count() == 1 and split.service_is_ready())
+    for value in range(20):
+        publisher.publish(UInt64(data=value))
+        graph.until(lambda expected=value + 1: graph.counted(recorder, "/numbers") == expected)
+        if value == 9:
+            asked = split.call_async(Trigger.Request())
+            graph.until(asked.done)
+            assert asked.result().success
+            assert "goes on in its next file" in asked.result().message
+    recorder.destroy_node()
+    for index in (0, 1):
+        with open_bag(graph.bags / "run" / f"run_{index}.mcap") as bag:
+            assert data_of(bag, "/numbers") == list(range(10 * index, 10 * index + 10))
+    with open_bag(graph.bags / "run") as bag:
+        assert data_of(bag, "/numbers") == list(range(20))
+
+
+def test_a_recorder_whose_files_have_a_limit_goes_on_in_the_next(graph: Graph) -> None:
+    recorder = graph.recorder(split_duration_s=0.5)
+    publisher = graph.node("talker").create_publisher(UInt64, "numbers", 100)
+    said = itertools.count()
+
+    def third_file_is_begun() -> bool:
+        publisher.publish(UInt64(data=next(said)))
+        return (graph.bags / "run" / "run_2.mcap").exists()
+
+    graph.until(lambda: publisher.get_subscription_count() == 1)
+    graph.until(third_file_is_begun)
+    recorder.destroy_node()
+    with open_bag(graph.bags / "run") as bag:
+        assert bag.cut == ""
+        numbers = data_of(bag, "/numbers")
+    assert numbers == list(range(len(numbers)))
+
+
+def test_what_is_dropped_is_told_for_its_topic(graph: Graph) -> None:
+    recorder = graph.recorder(queue_size_bytes=1_048_576)
+    node = graph.node("talker")
+    large = node.create_publisher(String, "large", 10)
+    small = node.create_publisher(String, "small", 10)
+    told: dict[str, str] = {}
+
+    def hear(message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name == "/recorder":
+                told.update({pair.key: pair.value for pair in status.values})
+                told["message"] = status.message
+
+    node.create_subscription(DiagnosticArray, "/diagnostics", hear, 10)
+    graph.until(lambda: large.get_subscription_count() == 1 and small.get_subscription_count() == 1)
+    for _ in range(3):
+        large.publish(String(data="x" * 2_000_000))  # larger than all that may wait
+        small.publish(String(data="x"))
+    graph.until(lambda: "3 dropped" in told.get("/large", "") and "3 messages" in told.get("/small", ""))
+    assert told["/large"] == "0 messages, 0 bytes, 3 dropped"
+    assert told["/small"].endswith(" bytes, 0 dropped")
+    assert told["dropped"] == "3"
+    assert told["message"].startswith("3 messages came while the disk was behind, and are not in the bag")
+    recorder.destroy_node()
+    with open_bag(graph.bags / "run") as bag:
+        assert data_of(bag, "/small") == ["x"] * 3
+        assert data_of(bag, "/large") == []
+
+
+def test_a_folder_that_cannot_be_written_is_refused(graph: Graph) -> None:
+    graph.bags.write_text("a file, not a folder")
+    recorder = graph.recorder()
+    assert recorder.state_id == State.PRIMARY_STATE_INACTIVE
+    told = recorder.health.status("", []).message
+    assert told == f"a bag cannot be written to {graph.bags / 'run'}: Not a directory"
+
+
 def test_topics_can_be_chosen(graph: Graph) -> None:
     recorder = graph.recorder(include="/a.*|/b", exclude="/a/secret")
     node = graph.node("talker")
@@ -367,7 +446,7 @@ def test_a_recorder_that_was_killed_goes_on_in_its_bag(graph: Graph) -> None:
 
 def numbers_in(path: Path) -> list[int]:
     """What is on the disk so far of a file that may be being written."""
-    if not path.exists():
+    if not path.exists() or not path.stat().st_size:  # it was begun just now
         return []
     with open_bag(path) as bag:
         return data_of(bag, "/numbers")

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from bags.bag_metadata import read_metadata
 from bags.definitions import message_definition
 from bags.earlier_files import EarlierFiles
 from bags.manifest import Manifest
@@ -86,6 +87,31 @@ def test_what_does_not_fit_the_queue_is_dropped_and_counted(writer: SlowWriter) 
         assert [recorded.message.data for recorded in bag.messages()] == taken
 
 
+def test_what_is_written_is_no_longer_held(tmp_path: Path, manifest: Manifest) -> None:
+    """Or a recorder that is behind would hold what it writes beside a queue that is full again."""
+    said = [number(value) for value in range(10)]
+    unheld = sys.getrefcount(said[0])
+    references: list[int] = []
+
+    class Watched(SlowWriter):
+        """A writer that looks who holds the first message."""
+
+        def write(self, channel: int, **message: Any) -> None:
+            super().write(channel, **message)
+            references.append(sys.getrefcount(said[0]))
+
+    writer = Watched(tmp_path / "bag", manifest=manifest)
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=1.0)
+    channel = recording.add_topic("/a", NUMBER)
+    for at, data in enumerate(said):
+        recording.put(channel, at + 1, data)
+    writer.go.set()
+    recording.finish()
+    assert recording.wait(WAIT_S)
+    assert references[0] > unheld
+    assert references[2:] == [unheld] * 8  # one more is in hand
+
+
 def test_a_full_disk_is_said_and_all_that_is_missing_is_counted(tmp_path: Path, manifest: Manifest) -> None:
     writer = SlowWriter(tmp_path / "bag", manifest=manifest, fails_at=10)
     writer.go.set()
@@ -100,6 +126,22 @@ def test_a_full_disk_is_said_and_all_that_is_missing_is_counted(tmp_path: Path, 
     assert (count.messages, count.dropped) == (10, 20)
     with open_bag(writer.folder) as bag:
         assert [recorded.message.data for recorded in bag.messages()] == list(range(10))
+
+
+def test_a_split_stands_where_it_was_asked_for(writer: SlowWriter) -> None:
+    recording = Recording(writer, queue_bytes=10**6, flush_period_s=0.1)
+    channel = recording.add_topic("/a", NUMBER)
+    for value in range(100):
+        if value in (30, 80):
+            assert recording.split()
+        assert recording.put(channel, value + 1, number(value))
+    writer.go.set()
+    recording.finish()
+    assert not recording.split()
+    assert recording.wait(WAIT_S)
+    assert [row.message_count for row in read_metadata(writer.folder).files] == [30, 50, 20]
+    with open_bag(writer.folder) as bag:
+        assert [recorded.message.data for recorded in bag.messages()] == list(range(100))
 
 
 def test_a_topic_without_messages_is_not_lost(writer: SlowWriter) -> None:

@@ -14,11 +14,12 @@ from mcap.writer import Writer
 from rosbags.rosbag2 import Reader
 
 from bags.definitions import message_definition
+from bags.file_writer import LARGEST_MANIFEST_RECORD
 from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.mcap_scan import MAGIC, whole_records
 from bags.reader import RawMessage, open_bag
 from bags.repair import repair_file
-from bags.writer import LARGEST_MANIFEST_RECORD, BagWriter
+from bags.writer import BagWriter
 from robustnav_msgs_py.errors import BadFileError
 
 PREFIXES = (Path(sys.prefix),)

@@ -101,6 +101,7 @@ def room(nodes: tuple[Node, Node], tmp_path: Path, manifest: Manifest) -> Iterat
     )
     yield Room(listener, recording, ears, mouth, executor, now_s)
     listener.close()
+    executor.shutdown()  # it holds the nodes, which would stay in the graph
     recording.finish()
     recording.wait(LIMIT_S)
 
