@@ -35,6 +35,8 @@ YAW_SPREAD_DEG, QUARTER_TURN_DEG = 30.0, 90
 TRIES = 30
 # Objects stand on a grid so fine that nobody sees it, for short numbers in scene files.
 PER_METRE = 1000
+# What hangs touches its wall instead, as nearly as a scene file can say.
+DECIMALS = 6
 
 
 def arrange(
@@ -239,7 +241,7 @@ class _Arrangement:
         area = surface.area
         y_m = self._between(area.y_min_m - around.y_min_m, area.y_max_m - around.y_max_m)
         if surface.hangs:
-            x_m: float | None = area.x_min_m - around.x_min_m
+            x_m: float | None = round(area.x_min_m - around.x_min_m, DECIMALS)
             if around.width_m > area.width_m:
                 return None
         else:
