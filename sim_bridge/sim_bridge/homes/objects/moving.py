@@ -26,7 +26,7 @@ def moved(
     walls: Sequence[Wall] = (),
     windows: Sequence[Window] = (),
 ) -> SmallObject:
-    """The object somewhere on `piece`: wholly on one of its surfaces, below the next board, beside the others.
+    """The object somewhere on `piece`: wholly on a surface, below the next board, beside the others.
 
     What hangs touches the wall behind the piece, one of `walls`, beside the `windows`. Raises BadMessageError
     where the piece has no room for it.
