@@ -557,7 +557,7 @@ def test_a_moved_object_is_elsewhere_for_everybody(free_poses: FreePoses) -> Non
             assert (now.furniture, now.room) == (moved.name, moved.room)
             assert now.as_truth().attributes != thing.as_truth().attributes
             seen = 0
-            for place in free_poses(simulation.home, 60, seed=1):
+            for place in free_poses(simulation.home, 30, seed=1):
                 bearing = math.atan2(now.y_m - place.y_m, now.x_m - place.x_m)
                 pose = Pose2D(x_m=place.x_m, y_m=place.y_m, yaw_rad=bearing)
                 truth = simulation._observer.look(pose, 0)
