@@ -2,6 +2,8 @@
 
 import os
 import socket
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
 
 # Fast DDS uses UDP ports from 7400 + 250 * domain; these domains stay below Linux' ephemeral ports.
 DOMAINS = range(20, 100)
+LOCKSTEP_PATIENCE_S = 120.0
 MARK = "ROBUSTNAV_TEST_RUN"
 
 
@@ -65,6 +68,23 @@ def _marked_processes() -> list[int]:
         if mark in variables:
             found.append(int(process.name))
     return found
+
+
+@pytest.fixture(scope="session")
+def lockstep_bags(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The bags of one search in lock-step, recorded twice, each in a fresh process."""
+    folders = [tmp_path_factory.mktemp("lockstep") for _ in range(2)]
+    script = Path(__file__).parent / "lockstep_search.py"
+    processes = [
+        subprocess.Popen(
+            [sys.executable, str(script), str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        for folder in folders
+    ]
+    for process in processes:
+        output, _ = process.communicate(timeout=LOCKSTEP_PATIENCE_S)
+        assert process.returncode == 0, output.decode(errors="replace")[-2000:]
+    return [folder / "bag" for folder in folders]
 
 
 @pytest.fixture

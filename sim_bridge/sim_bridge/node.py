@@ -56,7 +56,7 @@ from robustnav_nodes.graph.spin import run_nodes
 from sim_bridge.homes.floor_plan import candidate_mask, floor_plan
 from sim_bridge.pace import MOST_BEHIND_S, SHORTEST_TIMER_S, TURN_S, Pace
 from sim_bridge.parameters import SimParameters
-from sim_bridge.robot.planar import ORIGIN
+from sim_bridge.robot.planar import ORIGIN, composed
 from sim_bridge.sensors.camera_driver import Wanted
 from sim_bridge.sensors.scan import LASER_FRAME, LASER_HEIGHT_M
 
@@ -64,8 +64,7 @@ if TYPE_CHECKING:
     from sim_bridge.sensors.camera_driver import Shot
     from sim_bridge.simulation import Due, Simulation
 
-# `odom` does not drift here, so a pose in it is a pose in `map`.
-KNOWN_FRAMES = ("map", "odom")
+MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
 class SimBridge(GraphNode[SimParameters]):
@@ -164,10 +163,10 @@ class SimBridge(GraphNode[SimParameters]):
         self._running.command(velocity)
 
     def _go_to(self, goal: StampedPose) -> None:
-        self._running.go_to(_in_map(goal))
+        self._running.go_to(self._in_map(goal))
 
     def _place(self, pose: StampedPose) -> None:
-        self._running.place(_in_map(pose))
+        self._running.place(self._in_map(pose))
 
     def _fail(self, line: str) -> None:
         if self._running.fail(line):
@@ -261,14 +260,15 @@ class SimBridge(GraphNode[SimParameters]):
             ]
         )
 
-
-def _in_map(stamped: StampedPose) -> Pose2D:
-    """The pose in `map`; refused in frames that the simulator does not know."""
-    if stamped.frame_id not in KNOWN_FRAMES:
+    def _in_map(self, stamped: StampedPose) -> Pose2D:
+        """The pose in `map`; refused in frames that the simulator does not know."""
+        if stamped.frame_id == MAP_FRAME:
+            return stamped.pose
+        if stamped.frame_id == ODOM_FRAME:
+            return composed(self._running.map_from_odom(), stamped.pose)
         raise BadMessageError(
-            f"a pose is in frame {stamped.frame_id!r}; the simulator knows {' and '.join(KNOWN_FRAMES)}"
+            f"a pose is in frame {stamped.frame_id!r}; the simulator knows {MAP_FRAME} and {ODOM_FRAME}"
         )
-    return stamped.pose
 
 
 def main() -> int:

@@ -5,6 +5,8 @@ TURN_S = 0.01
 # Wall time that is made up for after the executor was held up; more is dropped.
 MOST_BEHIND_S = 0.2
 SHORTEST_TIMER_S = 0.002
+# A timer of exactly one period owes one step each time, however the seconds are rounded.
+ROUNDING_STEPS = 1e-6
 
 
 class Pace:
@@ -32,7 +34,7 @@ class Pace:
             self._owed += (now_s - self._last_s) * steps_per_s
         self._last_s = now_s
         self._owed = min(self._owed, max(1.0, self._most_behind_s * steps_per_s))
-        return int(self._owed)
+        return int(self._owed + ROUNDING_STEPS)
 
     def done(self) -> None:
         """One owed step was made."""

@@ -26,7 +26,7 @@ from sim_bridge.robot.bumper import Bumper
 from sim_bridge.robot.drive import STANDSTILL, Drive, DriveLimits
 from sim_bridge.robot.goal_follower import GoalFollower
 from sim_bridge.robot.odometry import OdometryDrift, WheelOdometry
-from sim_bridge.robot.planar import composed, inverse
+from sim_bridge.robot.planar import ORIGIN, composed, inverse
 from sim_bridge.robot.route import RoutePlanner
 from sim_bridge.sensors.camera import Camera, camera_model
 from sim_bridge.sensors.camera_driver import CameraDriver, Shot, Wanted
@@ -203,6 +203,7 @@ class Simulation:
             self.faults.clear()
         else:
             self.faults.start(fault, self.now_ns)
+        self._close_doors()
         return False
 
     # Time.
@@ -248,7 +249,9 @@ class Simulation:
         return self._pose_in_odom() if self._drifts else self.drive.pose
 
     def map_from_odom(self) -> Pose2D:
-        """The correction that a localiser would publish."""
+        """The correction that a localiser would publish; none without drift."""
+        if not self._drifts:
+            return ORIGIN
         return composed(self.drive.pose, inverse(self.odom_from_base()))
 
     def laser_scan(self) -> LaserScan:

@@ -93,7 +93,7 @@ class Stage:
             )
         thing = self.home.objects[instance]
         others = [other for other in self.home.objects if other.instance != instance]
-        put = moved(rng, thing, pieces[furniture], others)
+        put = moved(rng, thing, pieces[furniture], others, walls=self.home.walls, windows=self.home.windows)
         self.home = replace(
             self.home, objects=tuple(put if other is thing else other for other in self.home.objects)
         )

@@ -11,12 +11,14 @@ from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.generator import generate_home
 from sim_bridge.homes.home import Home
 from sim_bridge.homes.obstacles import ClearanceGrid
+from sim_bridge.homes.rooms.room_programmes import Difficulty
 from sim_bridge.parameters import SimParameters
 
 if TYPE_CHECKING:
     from sim_bridge.simulation import Simulation
 
-SEEDS = range(30)
+# Of each difficulty so many homes, from the seeds 0, 1, ...
+HOMES = {Difficulty.EASY: 12, Difficulty.MEDIUM: 12, Difficulty.HARD: 6}
 # Homes, maps and driving are tested without PyBullet, all but the node without ROS.
 collect_ignore = [] if find_spec("rclpy") else ["test_node.py"]
 if not find_spec("pybullet"):
@@ -31,7 +33,12 @@ if not find_spec("pybullet"):
 
 @pytest.fixture(scope="session")
 def homes() -> list[Home]:
-    return [generate_home(seed) for seed in SEEDS]
+    """Homes of all difficulties, the small ones first."""
+    return [
+        generate_home(seed, difficulty=difficulty)
+        for difficulty, count in HOMES.items()
+        for seed in range(count)
+    ]
 
 
 @pytest.fixture(scope="module")

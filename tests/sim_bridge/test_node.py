@@ -1,5 +1,6 @@
 """The node says what the contract lists, does what it is told, and answers nonsense with a sentence."""
 
+import math
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -23,6 +24,7 @@ from robustnav_msgs_py.conversions import (
     pose_to_message,
     record_from_message,
     stamp_from_message,
+    text_to_message,
     velocity_to_message,
     visible_from_message,
 )
@@ -32,6 +34,7 @@ from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.environment import prepare_environment
 from robustnav_nodes.graph.message_class import message_class
 from sim_bridge.node import SimBridge
+from sim_bridge.robot.planar import composed
 
 PATIENCE_S = 20.0
 
@@ -45,6 +48,7 @@ class Robot:
             parameter_overrides=[
                 Parameter("seed", value=3),
                 Parameter("real_time_factor", value=5.0),
+                Parameter("lockstep_periods", value=4),
                 Parameter("camera_width", value=80),
                 Parameter("camera_height", value=60),
             ]
@@ -123,6 +127,10 @@ def test_it_says_everything_that_the_contract_lists(robot: Robot) -> None:
     episode = record_from_message(robot.heard["truth/episode"][-1], Episode)
     assert episode.seed == 3
     assert robot.heard["scan"][-1].header.frame_id == "laser"
+    assert robot.heard["bumper"][-1].data is False
+    for item in objects:
+        assert dict(item.attributes)["class"] == item.label
+        assert dict(item.attributes)["room"] in episode.rooms
 
 
 def test_images_info_and_truth_share_their_stamps(robot: Robot) -> None:
@@ -153,17 +161,95 @@ def test_it_drives_as_told_and_stops_when_told_no_more(robot: Robot) -> None:
     robot.until(lambda: robot.odometry().angular_rad_s == 0.0)
 
 
+def test_an_action_ends_on_the_very_pose(robot: Robot) -> None:
+    for line, expected in (
+        ("left 90", Pose2D(x_m=0.0, y_m=0.0, yaw_rad=math.pi / 2.0)),
+        ("Right", Pose2D(x_m=0.0, y_m=0.0, yaw_rad=-math.radians(15.0))),
+    ):
+        goal = composed(robot.odometry().pose, expected)
+        robot.mouth["action"].publish(text_to_message(line))
+        robot.until(lambda goal=goal: is_at(robot.odometry(), goal))
+
+
+def is_at(odometry: Odometry, goal: Pose2D) -> bool:
+    """Whether the robot stands there, to the last bits."""
+    near = odometry.pose.distance_m(goal) < 1e-9 and abs(odometry.pose.turn_rad(goal)) < 1e-9
+    return near and odometry.linear_m_s == odometry.angular_rad_s == 0.0
+
+
+def test_driving_against_something_presses_the_bumper_and_is_told(robot: Robot) -> None:
+    robot.mouth["action"].publish(text_to_message("forward 9"))
+    robot.until(lambda: [message.data for message in robot.heard["bumper"]][-2:] == [True, False])
+    robot.until(lambda: _said(robot, "'forward 9' ended after") and _said(robot, "something is in the way"))
+    assert robot.ask("reset", Trigger, Trigger.Request()).success
+
+
+@pytest.mark.parametrize(
+    ("topic", "line", "sentence"),
+    [
+        ("action", "jump", "there is no action 'jump'; type 'forward [METRES]'"),
+        ("action", "forward nan", "forward takes metres, more than 0"),
+        ("sim/fault", "explode", "the fault 'explode' cannot be: there is no such fault"),
+        ("sim/fault", "move object 999 to chair 1", "there is no object '999'"),
+        ("sim/fault", "block moon / mars", "no door joins two rooms so named"),
+    ],
+)
+def test_a_line_that_nobody_understands_gives_a_sentence_and_nothing_else(
+    robot: Robot, topic: str, line: str, sentence: str
+) -> None:
+    before = robot.odometry().pose
+    robot.mouth[topic].publish(text_to_message(line))
+    robot.until(lambda: _said(robot, sentence))
+    assert robot.odometry().pose == before
+    assert robot.sim.is_active
+
+
+def test_a_silent_sensor_is_silent_until_it_is_cleared(robot: Robot) -> None:
+    robot.mouth["sim/fault"].publish(text_to_message("silent scan"))
+    robot.until(lambda: robot.sim._running.faults.is_silent("scan", robot.sim._running.now_ns))
+    for _ in range(5):
+        robot.odometry()
+    scans = len(robot.heard["scan"])
+    for _ in range(20):
+        robot.odometry()
+    assert len(robot.heard["scan"]) == scans
+    robot.mouth["sim/fault"].publish(text_to_message("clear"))
+    robot.next("scan")
+
+
+def test_a_moved_object_is_told_again_with_where_it_is(robot: Robot) -> None:
+    home = robot.sim._running.home
+    thing = next(thing for thing in home.objects if thing.label != "picture")
+    for piece in home.furniture:
+        if not piece.carries or piece.name == thing.furniture:
+            continue
+        count = len(robot.heard["truth/objects"])
+        robot.mouth["sim/fault"].publish(text_to_message(f"move object {thing.instance} to {piece.name}"))
+        refused = f"the {piece.name} has no room"
+        robot.until(lambda c=count, r=refused: len(robot.heard["truth/objects"]) > c or _said(robot, r))
+        if len(robot.heard["truth/objects"]) > count:
+            break
+    told = objects_from_message(robot.heard["truth/objects"][-1])[thing.instance]
+    assert told == robot.sim._running.home.objects[thing.instance].as_truth()
+    assert (told.x_m, told.y_m) != (thing.as_truth().x_m, thing.as_truth().y_m)
+    assert dict(told.attributes)["on"] == piece.kind
+    assert dict(told.attributes)["room"] == piece.room
+    assert dict(told.attributes)["colour"] == thing.look.colour
+
+
 def test_nonsense_is_refused_with_a_sentence_and_moves_nothing(robot: Robot) -> None:
     before = robot.odometry().pose
-    nan = Twist()
-    nan.linear.x = float("nan")
-    robot.mouth["cmd_vel"].publish(nan)
-    wall = pose_to_message(StampedPose(pose=Pose2D(x_m=0.0, y_m=0.0), stamp_ns=0))
-    robot.mouth["goal_pose"].publish(wall)
+    for wrong in (math.nan, math.inf):
+        twist = Twist()
+        twist.linear.x = wrong
+        robot.mouth["cmd_vel"].publish(twist)
+        robot.until(lambda wrong=wrong: _said(robot, f"must be finite, not ({wrong}"))
+    for x_m, y_m in ((0.0, 0.0), (-40.0, 2.0)):
+        wall = pose_to_message(StampedPose(pose=Pose2D(x_m=x_m, y_m=y_m), stamp_ns=0))
+        robot.mouth["goal_pose"].publish(wall)
+        place = f"({x_m:.2f}, {y_m:.2f})"
+        robot.until(lambda place=place: _said(robot, f"cannot stand at {place}"))
     elsewhere = pose_to_message(StampedPose(pose=before, stamp_ns=0, frame_id="moon"))
-    robot.until(
-        lambda: _said(robot, "must be finite, not (nan") and _said(robot, "cannot stand at (0.00, 0.00)")
-    )
     robot.mouth["goal_pose"].publish(elsewhere)
     robot.until(lambda: _said(robot, "is in frame 'moon'"))
     turned = pose_to_message(StampedPose(pose=before, stamp_ns=0))
@@ -190,18 +276,40 @@ def test_pause_holds_time_step_advances_it_reset_brings_the_robot_home(robot: Ro
     now_ns = robot.sim._running.now_ns
     for _ in range(3):
         assert robot.ask("step", Trigger, Trigger.Request()).success
-    assert robot.sim._running.now_ns == now_ns + 3 * 20_000_000
+    assert robot.sim._running.now_ns == now_ns + 3 * 4 * 20_000_000
     assert robot.ask("pause", SetBool, SetBool.Request(data=False)).success
     assert robot.ask("reset", Trigger, Trigger.Request()).success
     assert robot.odometry().pose == robot.sim._running.home.start
 
 
+def test_a_goal_in_odom_is_meant_where_odometry_has_it(robot: Robot) -> None:
+    """With drift, `odom` is not `map`: the robot's pose in one is the same place in the other."""
+    drifting = SimBridge(
+        parameter_overrides=[Parameter("drift_rad_per_rad", value=0.2), Parameter("camera_width", value=80)],
+        namespace="drifting",
+    )
+    try:
+        drifting.trigger_configure()
+        simulation = drifting._running
+        simulation.act("left 90")
+        for _ in range(200):
+            simulation.step()
+        told = simulation.odometry()
+        here = drifting._in_map(StampedPose(pose=told.pose, stamp_ns=0, frame_id=told.frame_id))
+        assert abs(told.pose.turn_rad(simulation.drive.pose)) > 1e-3
+        assert here.distance_m(simulation.drive.pose) < 1e-9
+        assert abs(here.turn_rad(simulation.drive.pose)) < 1e-9
+    finally:
+        drifting.trigger_shutdown()
+        drifting.destroy_node()
+
+
 def test_a_home_that_cannot_be_built_leaves_a_sentence(robot: Robot) -> None:
-    wrong = SimBridge(parameter_overrides=[Parameter("rooms", value=2)], namespace="wrong")
+    wrong = SimBridge(parameter_overrides=[Parameter("scene", value="/nowhere/home.yaml")], namespace="wrong")
     try:
         wrong.trigger_configure()
         assert wrong.state_id == State.PRIMARY_STATE_UNCONFIGURED
         values = wrong.health.status("wrong", []).values
-        assert any("3..6 rooms, not 2" in value for value in values.values())
+        assert any("/nowhere/home.yaml" in value for value in values.values())
     finally:
         wrong.destroy_node()

@@ -20,6 +20,13 @@ def test_steps_follow_wall_time(factor: float) -> None:
     assert run(Pace(0.02, 0.2), times_s, factor) == pytest.approx(10.0 / 0.02 * factor, abs=1)
 
 
+def test_a_timer_of_one_period_makes_one_step_each_time() -> None:
+    pace = Pace(0.02, 0.2)
+    pace.due(1.0, 1.0)
+    for tick in range(1, 5000):
+        assert run(pace, [(1_000_000_000 + tick * 20_000_000) / 1e9], 1.0) == 1
+
+
 def test_a_stall_is_not_made_up_for() -> None:
     pace = Pace(0.02, 0.2)
     assert run(pace, [0.0, 0.02], 1.0) == 1

@@ -17,7 +17,7 @@ MARGIN_M = 0.60
 def floor_plan(home: Home, stamp_ns: int = 0) -> OccupancyMap:
     """The home at 0.05 m: walls and furniture occupied, floor and doorways free, outside unknown."""
     floor = [room.inside for room in home.rooms] + [door.opening for door in home.doors]
-    areas = [(rect, FREE) for rect in floor] + [(rect, OCCUPIED) for rect in home.obstacles()]
+    areas = [(rect, FREE) for rect in floor] + [(rect, OCCUPIED) for rect in home.solid()]
     return _drawn(home, UNKNOWN, areas, stamp_ns)
 
 

@@ -260,9 +260,13 @@ class Home:
         return next((room for room in self.rooms if room.inside.holds(x_m, y_m)), None)
 
     def obstacles(self) -> tuple[Rect, ...]:
-        """What walls and furniture cover as far up as the robot reaches, and what lies outside."""
+        """What the robot must keep off: walls and furniture, and what lies outside."""
+        return (*self.solid(), *self.outside())
+
+    def solid(self) -> tuple[Rect, ...]:
+        """What walls and furniture cover as far up as the robot reaches."""
         walls = tuple(wall.base for wall in self.walls if wall.z_min_m < ROBOT_HEIGHT_M)
-        return (*walls, *(piece.footprint for piece in self.furniture), *self.outside())
+        return (*walls, *(piece.footprint for piece in self.furniture))
 
     def outside(self) -> tuple[Rect, ...]:
         """The parts of `bounds` that no room with its walls covers: none where the home is a rectangle."""

@@ -127,9 +127,10 @@ class ActionRunner:
         self.problem = ""
 
     def cancel(self) -> None:
-        """Forget all actions."""
+        """Forget all actions, and what was wrong with them."""
         self._waiting.clear()
         self._action = None
+        self.problem = ""
 
     def wanted(self, dt_s: float) -> Velocity:
         """The velocity to drive for the next `dt_s`; standstill when idle."""

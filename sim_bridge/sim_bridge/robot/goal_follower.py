@@ -95,9 +95,10 @@ class GoalFollower:
             self._begin()
 
     def cancel(self) -> None:
-        """Forget the goal."""
+        """Forget the goal, and what was wrong with it."""
         self.goal = None
         self.phase = Phase.IDLE
+        self.problem = ""
 
     def wanted(self, dt_s: float) -> Velocity:
         """The velocity to drive for the next `dt_s`; standstill when idle."""

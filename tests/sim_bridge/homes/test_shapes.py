@@ -5,10 +5,11 @@ import pytest
 
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.home import Home
+from sim_bridge.homes.materials import material
 from sim_bridge.homes.shapes import Part, Shape, ball, box, cylinder, extent, first_hit_m
 from sim_bridge.sensors.world import World
 
-RED = (1.0, 0.0, 0.0)
+RED = material("red paint")
 ALONG_X = np.array([[1.0, 0.0, 0.0]])
 DOWN = np.array([[0.0, 0.0, -1.0]])
 
@@ -65,4 +66,4 @@ def test_impossible_parts_are_refused() -> None:
         with pytest.raises(BadSceneError, match="sizes must be positive"):
             box((0.0, 0.0, 0.0), size, RED)
     with pytest.raises(BadSceneError, match="equal extents"):
-        Part(shape=Shape.BALL, centre_m=(0.0, 0.0, 0.0), size_m=(1.0, 1.0, 2.0), colour=RED)
+        Part(shape=Shape.BALL, centre_m=(0.0, 0.0, 0.0), size_m=(1.0, 1.0, 2.0), material=RED)

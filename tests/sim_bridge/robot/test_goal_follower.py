@@ -88,11 +88,11 @@ def test_goals_in_walls_furniture_and_outside_are_refused(simulation: Simulation
     before = simulation.drive.pose
     piece = home.furniture[0]
     for x_m, y_m in (
-        (0.0, 0.0),
+        (home.walls[0].base.centre_m),
         (-1.0, 2.0),
         (1e9, 0.0),
         (piece.x_m, piece.y_m),
-        (home.rooms[0].inside.x_min_m, 1.0),
+        (home.rooms[0].inside.x_min_m, home.rooms[0].inside.centre_m[1]),
     ):
         with pytest.raises(
             GoalRefusedError, match="the robot cannot stand at .*; choose a place on free floor"

@@ -20,7 +20,7 @@ TURNING = Velocity(linear_m_s=0.0, angular_rad_s=1.2)
         ("exposure_s", 0.2),
         ("exposure_s", -0.01),
         ("darkness", 1.1),
-        ("noise", float("nan")),
+        ("image_noise", float("nan")),
         ("image_downscale", 0),
         ("image_downscale", 1.5),
         ("depth_noise", 1.0),
@@ -64,9 +64,9 @@ def test_each_setting_makes_pictures_worse_and_keeps_their_form(name: str, simul
     assert np.array_equal(again.depth.depth_m, found.depth.depth_m, equal_nan=True)
 
 
-def test_depth_and_bodies_are_of_the_pose_that_the_stamp_means(simulation: Simulation) -> None:
+def test_depth_and_numbers_are_of_the_pose_that_the_stamp_means(simulation: Simulation) -> None:
     pose = simulation.home.start
     camera = DegradedCamera(simulation._camera, DEGRADATIONS["blur"], seed=1)
     still, turning = camera.take(pose, STANDSTILL, 0, 9), camera.take(pose, TURNING, 0, 9)
     assert (still.depth.depth_m == turning.depth.depth_m).all()
-    assert (still.bodies == turning.bodies).all()
+    assert (still.numbers == turning.numbers).all()

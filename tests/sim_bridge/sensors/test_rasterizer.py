@@ -81,7 +81,7 @@ def test_depth_and_numbers_agree_with_the_primitives(small_home: Home, viewpoint
         errors.append(np.abs(frame.depth.depth_m[v, u] - depth)[both])
         is_flat = np.array(
             [
-                all(part.shape is Shape.BOX for part in camera._scenery.items[int(at)].parts)
+                all(part.shape is Shape.BOX for part in camera.scenery.items[int(at)].parts)
                 for at in shown[both]
             ]
         )

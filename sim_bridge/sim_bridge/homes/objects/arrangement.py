@@ -35,6 +35,8 @@ YAW_SPREAD_DEG, QUARTER_TURN_DEG = 30.0, 90
 TRIES = 30
 # Objects stand on a grid so fine that nobody sees it, for short numbers in scene files.
 PER_METRE = 1000
+# What hangs touches its wall instead, as nearly as a scene file can say.
+DECIMALS = 6
 
 
 def arrange(
@@ -159,7 +161,7 @@ class _Arrangement:
         self._walls = walls
         self._windows = windows
         self._sites = [
-            _Site(piece=piece, number=number, surface=surface, headroom_m=_headroom_m(piece, surface))
+            _Site(piece=piece, number=number, surface=surface, headroom_m=headroom_m(piece, surface))
             for piece in furniture
             if piece.carries
             for number, surface in enumerate(piece.surfaces)
@@ -239,7 +241,7 @@ class _Arrangement:
         area = surface.area
         y_m = self._between(area.y_min_m - around.y_min_m, area.y_max_m - around.y_max_m)
         if surface.hangs:
-            x_m: float | None = area.x_min_m - around.x_min_m
+            x_m: float | None = round(area.x_min_m - around.x_min_m, DECIMALS)
             if around.width_m > area.width_m:
                 return None
         else:
@@ -252,21 +254,34 @@ class _Arrangement:
         return int(self._rng.integers(low, high + 1)) / PER_METRE if low <= high else None
 
     def _on_a_wall(self, found: _Placed) -> bool:
-        """Whether there is wall, and no window, behind what hangs."""
-        edge = replace(found.footprint, x_max_m=found.footprint.x_min_m + TOUCH_M)
-        back = found.site.piece.in_map(edge)
-        bottom_m, top_m = found.site.surface.height_m, found.top_m
-        for window in self._windows:
-            level = bottom_m < window.z_max_m + WINDOW_GAP_M and window.z_min_m - WINDOW_GAP_M < top_m
-            if level and back.grown(WINDOW_GAP_M).overlaps(window.pane):
-                return False
-        return not self._walls or any(
-            wall.z_min_m <= bottom_m and top_m <= wall.z_max_m and wall.base.grown(TOUCH_M).contains(back)
-            for wall in self._walls
-        )
+        height_m = (found.site.surface.height_m, found.top_m)
+        return is_on_a_wall(found.site.piece, found.footprint, height_m, self._walls, self._windows)
 
 
-def _headroom_m(piece: Furniture, surface: Surface) -> float:
+def is_on_a_wall(
+    piece: Furniture,
+    footprint: Rect,
+    height_m: tuple[float, float],
+    walls: Sequence[Wall],
+    windows: Sequence[Window],
+) -> bool:
+    """Whether there is wall, and no window, behind what hangs above a piece, from one height to the other.
+
+    `footprint` is in the piece's frame. Without `walls` only the windows count.
+    """
+    bottom_m, top_m = height_m
+    back = piece.in_map(replace(footprint, x_max_m=footprint.x_min_m + TOUCH_M))
+    for window in windows:
+        level = bottom_m < window.z_max_m + WINDOW_GAP_M and window.z_min_m - WINDOW_GAP_M < top_m
+        if level and back.grown(WINDOW_GAP_M).overlaps(window.pane):
+            return False
+    return not walls or any(
+        wall.z_min_m <= bottom_m and top_m <= wall.z_max_m and wall.base.grown(TOUCH_M).contains(back)
+        for wall in walls
+    )
+
+
+def headroom_m(piece: Furniture, surface: Surface) -> float:
     """How far up the next board above the surface leaves room; inf where there is none."""
     boards = [other.height_m for other in piece.surfaces if other.area.overlaps(surface.area)]
     for part in piece.parts:
