@@ -12,6 +12,7 @@ from mcap.records import Attachment, Channel, Chunk, Header, Message, Metadata, 
 from bags.bag_metadata import BagMetadata, CustomEntry, joined
 from bags.decoding import MessageDecoder
 from bags.earlier_files import CLOSED_ENTRY, counted, file_name
+from bags.file_writer import LARGEST_MANIFEST_RECORD, MANIFEST_ATTACHMENT, MANIFEST_RECORD
 from bags.image_redaction import blur_message, is_colored_cloud, is_image, may_hold_images, redact_parts
 from bags.mcap_rewriter import McapRewriter, new_chunk, record_bytes
 from bags.mcap_scan import (
@@ -30,7 +31,6 @@ from bags.recorded_values import CONVERSIONS
 from bags.redaction_choices import Chat, Images
 from bags.repair_bag import bag_files
 from bags.text_redaction import SpokenTexts, carries_chat, change_texts, chat_texts, redact_chat
-from bags.writer import LARGEST_MANIFEST_RECORD, MANIFEST_ATTACHMENT, MANIFEST_RECORD
 from robustnav_msgs_py.errors import BadFileError, BadMessageError, BadParameterError
 
 REDACTED_ENTRY = "robustnav_redacted"  # in metadata.yaml, also of bags that have no manifest
