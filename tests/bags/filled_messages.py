@@ -8,7 +8,10 @@ from rosidl_parser import definition as rosidl
 from robustnav_msgs_py import contract
 from robustnav_nodes.graph.message_class import message_class
 
-TYPES = sorted({row.type for row in contract.TOPICS} | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"})
+TYPES = sorted(
+    {row.type for row in contract.TOPICS if row.is_available}
+    | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"}
+)
 
 
 def filled(kind: Any, rng: np.random.Generator) -> Any:

@@ -1,6 +1,7 @@
 """Two messages differ where their fields do; stamps and wall time can be left out."""
 
 import array
+import math
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from nav_msgs.msg import OccupancyGrid, Path
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from bags.comparison import LONGEST_TEXT, WALL_TIME_KEYS, FieldDifference, differences
+from bags.comparison import LONGEST_TEXT, ROUNDING, WALL_TIME_KEYS, FieldDifference, differences
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 
@@ -29,12 +30,20 @@ def record(**values: str) -> DiagnosticStatus:
 
 
 @given(any_float, any_float)
-def test_numbers_differ_where_they_are_not_equal_and_nan_is_nan(one: float, other: float) -> None:
-    same = one == other or (one != one and other != other)
+def test_numbers_differ_by_more_than_rounding_and_nan_is_nan(one: float, other: float) -> None:
+    same = math.isclose(one, other, rel_tol=ROUNDING, abs_tol=ROUNDING) or (one != one and other != other)
     first, second = Twist(), Twist()
     first.linear.x, second.linear.x = one, other
     assert (not list(differences(first, second))) == same
     assert not list(differences(first, first))
+
+
+def test_another_processor_may_round_otherwise_in_numbers_and_in_records() -> None:
+    assert not list(differences(pose(0.1 + 0.2), pose(0.3)))
+    assert not list(differences(record(value="[0.30000000000000004, NaN]"), record(value="[0.3, NaN]")))
+    (found,) = differences(record(value="0.30001 of 7"), record(value="0.3 of 7"))
+    assert found.field == "values[value].value"
+    assert list(differences(record(value="0.3 of 7"), record(value="0.3 of 8")))
 
 
 def test_a_field_is_named_with_what_each_holds() -> None:

@@ -35,7 +35,7 @@ def test_a_home_in_which_things_were_moved_is_sound(homes: list[Home]) -> None:
     rng = np.random.default_rng(0)
     count = 0
     for home in homes[::2]:
-        for _ in range(8):
+        for _ in range(12):
             thing = home.objects[int(rng.integers(len(home.objects)))]
             piece = carriers(home)[int(rng.integers(len(carriers(home))))]
             others = [other for other in home.objects if other is not thing]
