@@ -35,7 +35,7 @@ pip_install = $(BIN)/python -m pip install --quiet --disable-pip-version-check -
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: demo test bench check docs clean help
+.PHONY: demo test bench check samples docs clean help
 
 demo: $(RUN_READY) ## run a search in a simulated home; ARGS="--scenario follow --user human"
 	$(call say,Starting the demo)
@@ -58,6 +58,12 @@ check: $(DEV_READY) ## lint, format, types, and that the generated tables agree 
 	$(call say,Checking that the generated tables agree with the code)
 	@$(BIN)/python -m robustnav_nodes.docs --check
 
+samples: $(RUN_READY) ## record the runs in bags/samples anew: after a change that they do not survive
+	$(call say,Recording the samples)
+	@rm -rf bags/samples/search
+	@$(BIN)/robustnav demo --lockstep --seed 1 --params bags/samples/small.yaml --bag bags/samples/search
+	@rm -rf bags/samples/search_logs bags/samples/search.png
+
 docs: $(DEV_READY) ## write the generated tables anew
 	$(call say,Writing the generated tables)
 	@$(BIN)/python -m robustnav_nodes.docs
@@ -68,7 +74,7 @@ clean: ## remove .venv and everything that tools leave behind
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help: ## list what make can do here
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 $(MADE):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \

@@ -12,6 +12,7 @@ from sim_bridge.homes.furniture.catalogue import build_furniture
 from sim_bridge.homes.furniture.furnishing import furnish
 from sim_bridge.homes.home import Furniture, Home
 from sim_bridge.homes.objects.arrangement import arrange
+from sim_bridge.homes.objects.catalogue import object_class
 from sim_bridge.homes.obstacles import ClearanceGrid
 from sim_bridge.homes.rooms.floor_layout import lay_out
 from sim_bridge.homes.rooms.room_programmes import (
@@ -59,16 +60,18 @@ def generate_scene(
 ) -> Scene:
     """A furnished home: easy ones have 1 room, medium 3 or 4, hard 6 to 10, unless `rooms` says how many.
 
-    `objects`: how many small objects (4..80); None: nine to eleven in one room, five to seven for each more.
-    `look_alikes`: a class of which the home holds at least three. Raises BadSceneError where the numbers are
-    out of range or no draw of the seed holds together.
-    """
+            `objects`: how many small objects (4..80); None: nine to eleven in one room, five to seven for each more.
+        `look_alikes`: a class of which the home holds at least three. Raises BadSceneError where the numbers are
+        out of range or no draw of the seed holds together.
+        """
     if seed < 0:
         raise BadSceneError(f"a seed must not be negative, not {seed!r}")
     if objects is not None and not MIN_OBJECTS <= objects <= MAX_OBJECTS:
         raise BadSceneError(f"a home holds {MIN_OBJECTS}..{MAX_OBJECTS} objects, not {objects!r}")
     if rooms is not None and not MIN_ROOMS <= rooms <= MAX_ROOMS:
         raise BadSceneError(f"a home has {MIN_ROOMS}..{MAX_ROOMS} rooms, not {rooms!r}")
+    if look_alikes:
+        object_class(look_alikes)  # unknown in every draw
     rng = np.random.default_rng(seed)
     room_count = rooms or room_count_of(rng, difficulty)
     low, high = (FIRST_OBJECTS + room_count * number for number in OBJECTS_PER_ROOM)

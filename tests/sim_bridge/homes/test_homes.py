@@ -225,7 +225,7 @@ def test_numbers_are_kept_and_bad_ones_refused() -> None:
             generate_home(5, **wrong)
     with pytest.raises(BadSceneError, match="must not be negative, not -1"):
         generate_home(-1)
-    with pytest.raises(BadSceneError, match="no class of objects is called 'mugg'; do you mean 'mug'"):
+    with pytest.raises(BadSceneError, match="^no class of objects is called 'mugg'; do you mean 'mug'"):
         generate_home(1, look_alikes="mugg")
 
 
