@@ -60,9 +60,10 @@ check: $(DEV_READY) ## lint, format, types, and that the generated tables agree 
 
 samples: $(RUN_READY) ## record the runs in bags/samples anew: after a change that they do not survive
 	$(call say,Recording the samples)
+	@rm -rf runs/samples
+	@$(BIN)/robustnav demo --lockstep --seed 6 --params bags/samples/small.yaml --bag runs/samples/search
 	@rm -rf bags/samples/search
-	@$(BIN)/robustnav demo --lockstep --seed 1 --params bags/samples/small.yaml --bag bags/samples/search
-	@rm -rf bags/samples/search_logs bags/samples/search.png
+	@mv runs/samples/search bags/samples/search
 
 docs: $(DEV_READY) ## write the generated tables anew
 	$(call say,Writing the generated tables)

@@ -61,4 +61,4 @@ def test_a_report_is_made_of_it(tmp_path: Path) -> None:
     page = tmp_path / "search.html"
     result = CliRunner().invoke(bag_app, ["report", str(SEARCH), "--out", str(page)])
     assert result.exit_code == 0, result.output
-    assert "headphones" in page.read_text(encoding="utf-8")
+    assert "hat" in page.read_text(encoding="utf-8")
