@@ -12,9 +12,6 @@ TYPES = sorted(
     {row.type for row in contract.TOPICS if row.is_available}
     | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"}
 )
-    {row.type for row in contract.TOPICS if row.is_available}
-    | {"rcl_interfaces/msg/Log", "std_msgs/msg/Empty"}
-)
 
 
 def filled(kind: Any, rng: np.random.Generator) -> Any:

@@ -60,9 +60,9 @@ def generate_scene(
 ) -> Scene:
     """A furnished home: easy ones have 1 room, medium 3 or 4, hard 6 to 10, unless `rooms` says how many.
 
-        `objects`: how many small objects (4..80); None: nine to eleven in one room, five to seven for each more.
+    `objects`: how many small objects (4..80); None: nine to eleven in one room, five to seven for each more.
     `look_alikes`: a class of which the home holds at least three. Raises BadSceneError where the numbers are
-    out of range or no draw of the seed holds together.
+    out of range, the class is unknown, or no draw of the seed holds together.
     """
     if seed < 0:
         raise BadSceneError(f"a seed must not be negative, not {seed!r}")
