@@ -565,7 +565,7 @@ def met_from_above(simulation: Simulation, instance: int, centre_m: Vector3) -> 
 
 
 def is_where_it_is_said_to_be(simulation: Simulation, instance: int, free_poses: FreePoses) -> bool:
-    """Whether truth and picture list the object in the same views, in some of them, and rays meet it."""
+    """Whether truth and picture show the object in the same place of some views, and rays meet it."""
     now = simulation.home.objects[instance]
     near = sorted(
         free_poses(simulation.home, 60, seed=1),
@@ -576,11 +576,15 @@ def is_where_it_is_said_to_be(simulation: Simulation, instance: int, free_poses:
         bearing = math.atan2(now.y_m - place.y_m, now.x_m - place.x_m)
         pose = Pose2D(x_m=place.x_m, y_m=place.y_m, yaw_rad=bearing)
         truth = simulation._observer.look(pose, 0)
-        shown = (simulation._camera.take(pose, 0, color=False).numbers == instance).sum()
-        listed = instance in truth.instance
-        if listed != (shown > 0) and shown >= 10:
+        rows, columns = np.nonzero(simulation._camera.take(pose, 0, color=False).numbers == instance)
+        listed = truth.instance == instance
+        if listed.any() and truth.visible_fraction[listed][0] > 0.5:
+            x_min, y_min, x_max, y_max = truth.box_px[listed][0]
+            if not len(rows) or not (x_min <= columns.mean() <= x_max and y_min <= rows.mean() <= y_max):
+                return False
+            seen += 1
+        elif not listed.any() and len(rows) >= 10:
             return False
-        seen += listed and shown > 0
     return seen > 0 and met_from_above(simulation, instance, now.centre_m)
 
 
