@@ -89,6 +89,7 @@ def _text(value: Any, other: Any) -> str:
         a, b = np.asarray(value).ravel(), np.asarray(other).ravel()
         if len(a) != len(b):
             return f"{len(a)} values"
-        at = int(np.flatnonzero(a != b)[0]) if (a != b).any() else 0
+        other_than = (a != b) & ~((a != a) & (b != b))
+        at = int(np.flatnonzero(other_than)[0]) if other_than.any() else 0
         text = f"{a[at]!r} at {at} of {len(a)}"
     return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 1]}…"

@@ -107,6 +107,11 @@ def replay(
     if parameter_file is not None:
         check_parameter_file(parameter_file)
     names = tuple(nodes) or tuple(name for name in REPLAYED if name in told)
+    if not names:
+        raise BadFileError(
+            f"{bag.path} tells the parameters of no node that can be replayed ({', '.join(REPLAYED)}): was "
+            "it recorded by robustnav's recorder?"
+        )
     for name in names:
         _check(name, told, bag)
     session = _Session(bag, {name: told[name] for name in names}, parameter_file)

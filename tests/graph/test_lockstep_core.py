@@ -64,6 +64,16 @@ def test_who_comes_late_hears_what_is_latched_and_nothing_else() -> None:
     assert late == list(range(5))[-LATCHED.qos.depth :]
 
 
+def test_who_comes_between_a_word_and_its_delivery_hears_it_once_after_what_was_latched() -> None:
+    lockstep, heard = Lockstep(), list[int]()
+    lockstep.say("map", LATCHED, 1)
+    lockstep.settle()
+    lockstep.say("map", LATCHED, 2)
+    lockstep.listen("map", LATCHED, heard.append)
+    lockstep.settle()
+    assert heard == [1, 2]
+
+
 def test_who_no_longer_listens_hears_nothing() -> None:
     lockstep, heard = Lockstep(), []
     lockstep.listen("/t", VOLATILE, heard.append)

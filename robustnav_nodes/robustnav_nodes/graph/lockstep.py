@@ -73,17 +73,14 @@ class Lockstep:
 
     def say(self, topic: str, row: Topic, message: Any) -> None:
         """Hand a message to all who hear `topic`, once what was said before is handled."""
-        channel = self._channel(topic)
-        if row.qos.latched:
-            channel.kept = deque([*channel.kept, message], maxlen=row.qos.depth)
-        self._pending.append(partial(self._deliver, channel, topic, row, message))
+        self._pending.append(partial(self._deliver, self._channel(topic), topic, row, message))
 
     def listen(self, topic: str, row: Topic, hear: Callable[[Any], None]) -> None:
         """Hear a topic from now on, and what is latched on it."""
         channel = self._channel(topic)
         channel.listeners.append(hear)
-        if row.qos.latched:
-            self._pending.extend(partial(hear, message) for message in channel.kept)
+        # Before what waits: that is newer, and reaches the listener as all others.
+        self._pending.extendleft(partial(hear, message) for message in reversed(channel.kept))
 
     def forget(self, topic: str, hear: Callable[[Any], None]) -> None:
         """No longer hear a topic."""
@@ -126,6 +123,8 @@ class Lockstep:
         self.time_ns = max(self.time_ns, until_ns)
 
     def _deliver(self, channel: _Channel, topic: str, row: Topic, message: Any) -> None:
+        if row.qos.latched:
+            channel.kept = deque([*channel.kept, message], maxlen=row.qos.depth)
         if topic == CLOCK:
             self.ros_time_ns = clock_from_message(message)
         self._watch(Said(topic=topic, row=row, message=message, time_ns=self.time_ns))
