@@ -301,6 +301,15 @@ TOPICS = (
         meaning="the detections to look at in RViz or Foxglove",
     ),
     Topic(
+        name="detections/vision",
+        type="vision_msgs/msg/Detection3DArray",
+        qos=SENSOR,
+        speakers=("detection",),
+        listeners=(),
+        meaning="the detections once more, where vision_msgs is installed",
+        optional=True,
+    ),
+    Topic(
         name="belief/cloud",
         type="sensor_msgs/msg/PointCloud2",
         qos=LATCHED,
