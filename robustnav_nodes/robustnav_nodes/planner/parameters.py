@@ -43,6 +43,10 @@ class PlannerParameters(SearchSpaceParameters, PomcpParameters):
     recall: float = parameter(
         0.6, "lookahead: how likely a target in view is detected, as far as planning goes", low=0.01, high=1.0
     )
+    detector_statistics_file: str = parameter(
+        "",
+        "lookahead: JSON file that tells recall per class instead, as the belief reads it; empty: as above",
+    )
     goals: int = parameter(20, "lookahead: viewpoints tried for one decision", low=1, high=10_000)
     lookahead_steps: int = parameter(60, "lookahead: steps thought ahead", low=1, high=10_000)
     worth: str = parameter(
