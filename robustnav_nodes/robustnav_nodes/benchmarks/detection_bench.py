@@ -200,8 +200,7 @@ def _place_errors(
         Boxes(box_px=boxes.box_px[right], score=boxes.score[right], label=right.astype(np.uint32)),
         picture.depth,
         picture.camera,
-        part=parameters.depth_part,
-        samples_min=parameters.depth_samples_min,
+        parameters,
     )
     centres_m = picture.seen.position_m[rows[placed.label]]
     return [float(off_m) for off_m in np.linalg.norm(placed.position_m - centres_m, axis=1)]

@@ -202,10 +202,7 @@ class Detection(GraphNode[DetectionParameters]):
     # Words.
 
     def _say(self, image: _Image, boxes: Boxes) -> None:
-        limits = self.parameters
-        detections, dropped = place_boxes(
-            boxes, image.depth, image.camera, part=limits.depth_part, samples_min=limits.depth_samples_min
-        )
+        detections, dropped = place_boxes(boxes, image.depth, image.camera, self.parameters)
         complaint = depth_complaint(image.depth)
         if dropped:
             complaint = f"{dropped} of {len(boxes)} detections have no valid depth; dropped"

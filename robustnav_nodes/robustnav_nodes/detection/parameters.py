@@ -81,7 +81,18 @@ class DetectionParameters:
         5.0, "a back end that could not be made is tried again after", unit="s", low=0.5, high=600.0
     )
 
-    depth_part: float = parameter(0.5, "middle part of a box whose depth is the object's", low=0.05, high=1.0)
+    depth_gap_m: float = parameter(
+        0.12, "surfaces in a box are parted where depth jumps by more than this", unit="m", low=0.01, high=2.0
+    )
+    depth_cover: float = parameter(
+        0.4, "the nearest surface that covers this part of a box is the object", low=0.05, high=1.0
+    )
+    depth_behind: float = parameter(
+        0.2,
+        "an object's middle lies behind its face by this part of its box's smaller side",
+        low=0.0,
+        high=1.0,
+    )
     depth_samples_min: int = parameter(3, "valid depth samples that a box needs", low=1, high=10_000)
     marker_lifetime_s: int = parameter(1, "how long markers stay", unit="s", low=1, high=60)
     image_wait: int = parameter(
