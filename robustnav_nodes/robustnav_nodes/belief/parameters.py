@@ -59,6 +59,16 @@ class BeliefParameters(SearchSpaceParameters):
         "it; empty: defaults",
     )
 
+    learn_statistics: bool = parameter(
+        True, "learn how good the detector is from finds that the dock or the person confirms or refutes"
+    )
+    learn_pseudo_count: float = parameter(
+        5.0, "the statistics at the start are worth", unit="looks", low=0.1, high=10_000.0
+    )
+    online_statistics_file: str = parameter(
+        "", "JSON file in which what was learnt is kept from run to run; empty: forgotten at the end"
+    )
+
     min_translation_m: float = parameter(
         0.15,
         "a view counts when the robot is this far from every view that counted",
