@@ -26,6 +26,12 @@ def test_the_best_of_a_heap_stays_and_other_classes_are_left_alone() -> None:
     assert found.label.tolist() == [0, 0, 1]
 
 
+def test_a_box_without_area_is_dropped() -> None:
+    found = boxes((0, 0.9, 0), (30, 0.8, 0))
+    found.box_px[0, 2] = 0.0
+    assert suppress(found, 0.5).box_px[:, 0].tolist() == [30.0]
+
+
 def test_nothing_stays_nothing() -> None:
     assert len(suppress(boxes(), 0.5)) == 0
 

@@ -34,7 +34,7 @@ def _rows(output: Output, classes: int) -> Output | None:
     """[n, 4 + classes] or [n, 5 + classes]."""
     if output.ndim != 3 or output.shape[0] != 1:
         return None
-    table = output[0]
+    table: Output = output[0]
     if table.shape[0] == 4 + classes:
         return table.T
     if table.shape[1] in (5 + classes, 4 + classes):
