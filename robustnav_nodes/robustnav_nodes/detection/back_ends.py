@@ -36,8 +36,12 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
 
 def _learned(parameters: DetectionParameters) -> PixelDetector:
     from robustnav_nodes.detection.learned.detector import LearnedDetector
+    from robustnav_nodes.detection.learned.weights import SHIPPED, load_weights
 
-    detector: PixelDetector = LearnedDetector(Path(parameters.model) if parameters.model else None)
+    path = Path(parameters.model).expanduser() if parameters.model else SHIPPED
+    named = bool(parameters.classes or parameters.classes_file)
+    labels = class_names(parameters.classes, parameters.classes_file) if named else None
+    detector: PixelDetector = LearnedDetector(load_weights(path, labels), parameters.score_min)
     return detector
 
 

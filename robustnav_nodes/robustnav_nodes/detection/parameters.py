@@ -53,11 +53,11 @@ class DetectionParameters:
         "open_vocabulary: folder of the model",
     )
     classes: list[str] = parameter(
-        [], "onnx, open_vocabulary: the class names, in the order of the model's outputs"
+        [],
+        "onnx, open_vocabulary: the class names, in the order of the model's outputs; learned: those that its "
+        "weights must be for, empty: whatever they are for",
     )
-    classes_file: str = parameter(
-        "", "onnx, open_vocabulary: text file of the class names instead, one on a line"
-    )
+    classes_file: str = parameter("", "text file of the class names instead, one on a line")
     score_min: float = parameter(
         0.3, "learned, onnx, open_vocabulary: boxes with a lower score are dropped", low=0.0, high=1.0
     )
