@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robustnav_nodes.belief.detector_statistics import ClassStatistics, RecallByRange
+from robustnav_msgs_py.detector_statistics import ClassStatistics, RecallByRange
 from robustnav_nodes.belief.evidence import (
     F1Evidence,
     LikelihoodEvidence,

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics, DetectorStatistics, RecallByRange
 from robustnav_msgs_py.errors import BadFileError, BadMessageError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics, DetectorStatistics, RecallByRange
 from robustnav_nodes.belief.learnt_statistics import LearntStatistics, read_observed, write_observed
 from robustnav_nodes.belief.online_statistics import Observed
 from robustnav_nodes.belief.verdict import read_verdict

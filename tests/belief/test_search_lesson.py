@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.records import SearchPhase, SearchState
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.observation import place_densities
 from robustnav_nodes.belief.online_statistics import CountedLook, Observed, OnlineStatistics
 from robustnav_nodes.belief.search_lesson import SearchLesson

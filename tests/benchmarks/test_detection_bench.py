@@ -7,8 +7,8 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from robustnav_msgs_py.detector_statistics import read_detector_statistics
 from robustnav_msgs_py.errors import BadParameterError
-from robustnav_nodes.belief.detector_statistics import read_detector_statistics
 from robustnav_nodes.benchmarks.detection_command import detection_command
 from robustnav_nodes.benchmarks.detection_scores import NONE
 from robustnav_nodes.benchmarks.detection_statistics_file import statistics_content, write_statistics

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics, DetectorStatistics
 from robustnav_msgs_py.records import SearchPhase, SearchState
-from robustnav_nodes.belief.detector_statistics import ClassStatistics, DetectorStatistics
 from robustnav_nodes.belief.learnt_statistics import LearntStatistics
 from robustnav_nodes.belief.online_statistics import CountedLook
 from robustnav_nodes.belief.search_lesson import SearchLesson

@@ -9,7 +9,7 @@ import pytest
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_msgs_py.parameters import build
 from robustnav_nodes.detection.back_ends import make_detector
-from robustnav_nodes.detection.class_names import class_names
+from robustnav_nodes.detection.class_names import read_class_names
 from robustnav_nodes.detection.parameters import DetectionParameters
 
 MODULES = {"learned": "learned.detector", "onnx": "onnx_detector", "open_vocabulary": "open_vocabulary"}
@@ -27,9 +27,9 @@ def test_truth_does_not_look_at_pixels() -> None:
 @pytest.mark.parametrize("back_end", ["onnx", "open_vocabulary"])
 def test_a_model_must_be_named_and_there(back_end: str, tmp_path: Path) -> None:
     with pytest.raises(BadParameterError, match="set the parameter model"):
-        make(back_end=back_end, classes=["mug"])
+        make(back_end=back_end, class_names=["mug"])
     with pytest.raises(BadFileError, match="there is no"):
-        make(back_end=back_end, classes=["mug"], model=str(tmp_path / "nowhere"))
+        make(back_end=back_end, class_names=["mug"], model=str(tmp_path / "nowhere"))
 
 
 @pytest.mark.parametrize(
@@ -48,13 +48,13 @@ def test_what_is_not_installed_is_named(
 
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(BadParameterError, match=rf"No module named '{package}'.*robustnav\[{extra}\]"):
-        make(back_end=back_end, model=str(tmp_path), classes=["mug"])
+        make(back_end=back_end, model=str(tmp_path), class_names=["mug"])
 
 
 def test_class_names_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "names.txt"
     path.write_text("# of the model\nmug\n\n coffee cup \n")
-    assert class_names([], str(path)) == ("mug", "coffee cup")
+    assert read_class_names([], str(path)) == ("mug", "coffee cup")
 
 
 @pytest.mark.parametrize(
@@ -63,15 +63,15 @@ def test_class_names_from_a_file(tmp_path: Path) -> None:
 )
 def test_class_names_that_cannot_be(names: list[str], words: str) -> None:
     with pytest.raises(BadParameterError, match=words):
-        class_names(names, "")
+        read_class_names(names, "")
 
 
 def test_class_files_that_cannot_be(tmp_path: Path) -> None:
     path = tmp_path / "names.txt"
     with pytest.raises(BadFileError, match="No such file"):
-        class_names([], str(path))
+        read_class_names([], str(path))
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(BadFileError, match="are no text"):
-        class_names([], str(path))
+        read_class_names([], str(path))
     with pytest.raises(BadParameterError, match="give one of the two"):
-        class_names(["mug"], str(path))
+        read_class_names(["mug"], str(path))

@@ -186,7 +186,7 @@ def test_a_missing_model_is_a_sentence_and_is_taken_when_it_comes(
     bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "model.onnx"
-    scene = Scene(bench, model=str(path), classes=["mug"])
+    scene = Scene(bench, model=str(path), class_names=["mug"])
     scene.give_camera()
     scene.expect_problem("there is no")
     scene.show(S)

@@ -5,8 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics, RecallByRange
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics, RecallByRange
 from robustnav_nodes.belief.observation import detected_factor, missed_factor, usable_f1
 from robustnav_nodes.belief.parameters import BeliefParameters
 

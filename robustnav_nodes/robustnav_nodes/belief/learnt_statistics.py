@@ -8,9 +8,9 @@ from typing import Any
 
 from scipy.special import betaincinv
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics, DetectorStatistics
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.records import DetectorRecord
-from robustnav_nodes.belief.detector_statistics import ClassStatistics, DetectorStatistics
 from robustnav_nodes.belief.online_statistics import Observed, OnlineStatistics
 
 UPPER_BOUND = 0.95

@@ -9,13 +9,13 @@ import numpy as np
 from std_msgs.msg import Float64
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.detector_statistics import DetectorStatistics, read_detector_statistics
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
 from robustnav_msgs_py.pose_history import PoseHistory, check_frame
 from robustnav_msgs_py.records import SearchState
 from robustnav_msgs_py.values import OK, WARN, Detections, OccupancyMap, Odometry
 from robustnav_nodes.belief.belief_map import belief_map
-from robustnav_nodes.belief.detector_statistics import DetectorStatistics, read_detector_statistics
 from robustnav_nodes.belief.learnt_statistics import LearntStatistics, read_observed, write_observed
 from robustnav_nodes.belief.online_statistics import OnlineStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters

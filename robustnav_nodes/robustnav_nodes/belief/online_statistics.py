@@ -11,9 +11,9 @@ over all poses (0.83 for 0.78 in the medium scenes), recall does not.
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 
 # Of the densities, 1 at the detected place: 2.4 standard deviations, beyond which 5 % of the detections of a
 # target lie on the floor.

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Float64, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.evidence import evidence_of
 from robustnav_nodes.belief.location_belief import LocationBelief
 from robustnav_nodes.belief.observation import place_densities

@@ -21,7 +21,7 @@ EVERY = "all"
 def detection_command(
     back_end: Annotated[str, typer.Option(help="truth, learned, onnx or open_vocabulary")] = "learned",
     model: Annotated[str, typer.Option(help="weights, ONNX file or folder of the model")] = "",
-    classes_file: Annotated[str, typer.Option(help="class names of the model, one on a line")] = "",
+    class_names: Annotated[str, typer.Option(help="class names of the model, one on a line")] = "",
     homes: Annotated[int, typer.Option(min=1, max=10_000, help="easy, medium, hard, easy ...")] = 12,
     poses: Annotated[int, typer.Option(min=2, max=10_000, help="pictures of each home")] = 30,
     seed: Annotated[
@@ -50,7 +50,7 @@ def detection_command(
     if plots is not None and not plots.is_dir():
         raise BadParameterError(f"--plots {str(plots)!r} is no folder; make it first")
     names = _degradations(degradation)
-    values: dict[str, Any] = {"back_end": back_end, "model": model, "classes_file": classes_file}
+    values: dict[str, Any] = {"back_end": back_end, "model": model, "class_names_file": class_names}
     if score is not None:
         values["score_min"] = score
     parameters = _parameters(values)

@@ -1,4 +1,4 @@
-"""What a tally tells of a detector, as the file that the belief reads (`belief.detector_statistics`)."""
+"""What a tally tells of a detector, as the file that belief and planner read."""
 
 import json
 from collections.abc import Sequence

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
-from robustnav_nodes.detection.class_names import class_names
+from robustnav_nodes.detection.class_names import read_class_names
 from robustnav_nodes.detection.parameters import DetectionParameters
 from robustnav_nodes.detection.pixel_detector import PixelDetector
 
@@ -39,15 +39,15 @@ def _learned(parameters: DetectionParameters) -> PixelDetector:
     from robustnav_nodes.detection.learned.weights import SHIPPED, load_weights
 
     path = Path(parameters.model).expanduser() if parameters.model else SHIPPED
-    named = bool(parameters.classes or parameters.classes_file)
-    labels = class_names(parameters.classes, parameters.classes_file) if named else None
+    named = bool(parameters.class_names or parameters.class_names_file)
+    labels = read_class_names(parameters.class_names, parameters.class_names_file) if named else None
     detector: PixelDetector = LearnedDetector(load_weights(path, labels), parameters.score_min)
     return detector
 
 
 def _onnx(parameters: DetectionParameters) -> PixelDetector:
     path = _model_path(parameters, "an ONNX file")
-    labels = class_names(parameters.classes, parameters.classes_file)
+    labels = read_class_names(parameters.class_names, parameters.class_names_file)
     from robustnav_nodes.detection.onnx_detector import OnnxDetector
 
     return OnnxDetector(
@@ -61,7 +61,7 @@ def _onnx(parameters: DetectionParameters) -> PixelDetector:
 
 def _open_vocabulary(parameters: DetectionParameters) -> PixelDetector:
     path = _model_path(parameters, "a folder with a model that transformers saved")
-    labels = class_names(parameters.classes, parameters.classes_file)
+    labels = read_class_names(parameters.class_names, parameters.class_names_file)
     from robustnav_nodes.detection.open_vocabulary import OpenVocabularyDetector
 
     return OpenVocabularyDetector(

@@ -52,12 +52,12 @@ class DetectionParameters:
         "learned: weights, empty for those that come along; onnx: the model file; "
         "open_vocabulary: folder of the model",
     )
-    classes: list[str] = parameter(
+    class_names: list[str] = parameter(
         [],
-        "onnx, open_vocabulary: the class names, in the order of the model's outputs; learned: those that its "
-        "weights must be for, empty: whatever they are for",
+        "onnx, open_vocabulary: the class names, in the order of the model's outputs; learned: those that "
+        "its weights must be for, empty: whatever they are for",
     )
-    classes_file: str = parameter("", "text file of the class names instead, one on a line")
+    class_names_file: str = parameter("", "text file of the class names instead, one on a line")
     score_min: float = parameter(
         0.3, "learned, onnx, open_vocabulary: boxes with a lower score are dropped", low=0.0, high=1.0
     )

@@ -10,20 +10,18 @@ from typing import Any
 import numpy as np
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.detector_statistics import read_detector_statistics
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.records import SearchPhase, SearchState
 from robustnav_msgs_py.values import BeliefCloud, OccupancyMap, Odometry, Pose2D, StampedPose
-from robustnav_nodes.belief.detector_statistics import read_detector_statistics
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 from robustnav_nodes.planner.drive import allowed_time_s, has_arrived, stands
-from robustnav_nodes.planner.parameters import PlannerParameters
+from robustnav_nodes.planner.parameters import PlannerParameters, with_recall
 from robustnav_nodes.planner.search_session import NextStep, SearchSession
 from robustnav_nodes.search_space.cache import cached_search_space, user_cache_folder
 from robustnav_nodes.search_space.floor_inputs import FloorInputs
 from robustnav_nodes.search_space.space import SearchSpace
-
-LEAST_RECALL = 0.01  # a planner that expects to detect nothing would go nowhere
 
 
 class Doing(StrEnum):
@@ -144,8 +142,7 @@ class Planner(GraphNode[PlannerParameters]):
         """With the recall that the detector has on the target's class, where a file tells it."""
         if self._statistics is None:
             return self.parameters
-        recall = min(max(self._statistics.of(target).recall, LEAST_RECALL), 1.0)
-        return replace(self.parameters, recall=recall)
+        return with_recall(self.parameters, self._statistics.of(target).recall)
 
     def _stop(self, message: str) -> None:
         was_searching = self._session is not None and not self._session.ended

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robustnav_msgs_py.errors import BadFileError, BadParameterError
-from robustnav_nodes.belief.detector_statistics import (
+from robustnav_msgs_py.detector_statistics import (
     ClassStatistics,
     RecallByRange,
     read_detector_statistics,
 )
+from robustnav_msgs_py.errors import BadFileError, BadParameterError
 
 NO_BINS = json.dumps(
     {"unknown_class": {"precision": 1, "recall": 1, "recall_by_range": {"edges_m": [0, 1], "recall": []}}}
