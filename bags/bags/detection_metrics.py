@@ -9,7 +9,7 @@ from bags.recorded_values import namespace_of, recorded_values
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.values import Detections, VisibleObjects
-from robustnav_nodes.benchmarks.detection_bench import floor_distance_m
+from robustnav_nodes.benchmarks.detection_pictures import floor_distance_m
 from robustnav_nodes.benchmarks.detection_tally import Tally, TrueObjects
 from robustnav_nodes.detection.boxes import Boxes
 

@@ -1,24 +1,24 @@
-"""How good a detector is in homes that it has never seen: pictures from where a robot may stand."""
+"""How good a detector is in homes that it has never seen."""
 
-import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robustnav_msgs_py.frames import CameraMount, base_from_optical
+from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.values import (
-    CameraModel,
-    ColorImage,
-    DepthImage,
     Float64,
-    Pose2D,
-    Velocity,
-    VisibleObjects,
 )
+from robustnav_nodes.benchmarks.detection_instances import (
+    MatcherMaker,
+    Sighting,
+    Trial,
+    sightings,
+    trials,
+)
+from robustnav_nodes.benchmarks.detection_pictures import Picture, floor_distance_m, pictures
 from robustnav_nodes.benchmarks.detection_scores import NONE
 from robustnav_nodes.benchmarks.detection_tally import Tally, TrueObjects
 from robustnav_nodes.detection.back_ends import make_detector
@@ -28,30 +28,8 @@ from robustnav_nodes.detection.parameters import TRUTH, DetectionParameters
 from robustnav_nodes.detection.placement import place_boxes
 from robustnav_nodes.detection.truth_detector import TruthDetector
 
-if TYPE_CHECKING:  # the simulator stands on this package
-    from sim_bridge.homes.home import Home
-    from sim_bridge.homes.obstacles import ClearanceGrid
-
-WIDTH, HEIGHT, VIEW_RAD, RANGE_M = 320, 240, math.pi / 3.0, 10.0
-STAND_CLEARANCE_M = 0.25
-AIMED_M = (0.8, 4.0)
-AIM_ERROR_RAD = 0.4
-# Blur needs motion: the robot slows down to look, but images come while it turns.
-MOTION = Velocity(linear_m_s=0.1, angular_rad_s=0.3)
+AFTER = 100_000  # seeds of the homes with look-alikes lie so much higher
 LOWEST_SCORE = 0.01  # average precision needs also what a node would not say
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Picture:
-    """One image from `robot`, and what it really shows; pixels: float64 [n], how many show each object."""
-
-    robot: Pose2D
-    color: ColorImage
-    depth: DepthImage
-    camera: CameraModel
-    seen: VisibleObjects
-    pixels: Float64
-    labels: tuple[str, ...]
 
 
 Look = Callable[[Picture], Boxes]
@@ -60,48 +38,15 @@ Look = Callable[[Picture], Boxes]
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Measured:
     """A detector under one degradation. place_error_m: distances of right detections from the objects'
-    centres; image_ms: of each image.
+    centres; image_ms: of each image; choices: of one thing among others of its class, none where the back end
+    does not compare things.
     """
 
     degradation: str
     tally: Tally
     place_error_m: Float64
     image_ms: Float64
-
-
-def pictures(seeds: Sequence[int], poses: int, degradation: str) -> Iterator[Picture]:
-    """From `poses` places in the home of each seed: every other one at random, the others at an object.
-
-    Homes are easy, medium and hard in turn. The same seed gives the same places whatever is degraded.
-    """
-    from sim_bridge.homes.generator import generate_home
-    from sim_bridge.homes.rooms.room_programmes import Difficulty
-    from sim_bridge.sensors.camera import Camera, camera_model
-    from sim_bridge.sensors.degradations import DEGRADATIONS
-    from sim_bridge.sensors.degraded_camera import DegradedCamera
-    from sim_bridge.sensors.visibility import Observer
-    from sim_bridge.stage import Stage
-
-    difficulties, model, mount = list(Difficulty), camera_model(WIDTH, HEIGHT, VIEW_RAD), CameraMount()
-    for number, seed in enumerate(seeds):
-        home = generate_home(seed, difficulty=difficulties[number % len(difficulties)])
-        with Stage(home) as stage:
-            camera = Camera(stage.scenery, model, mount, RANGE_M)
-            degraded = DegradedCamera(camera, DEGRADATIONS[degradation], seed)
-            observer = Observer(stage.world, home, model, mount, RANGE_M)
-            for frame, robot in enumerate(_places(home, stage.grid, seed, poses)):
-                taken = degraded.take(robot, MOTION, frame, frame + 1)
-                seen = observer.look(robot, frame + 1)
-                if taken.color is not None:
-                    yield Picture(
-                        robot=robot,
-                        color=taken.color,
-                        depth=taken.depth,
-                        camera=model,
-                        seen=seen,
-                        pixels=_pixels(taken.numbers, seen),
-                        labels=home.labels,
-                    )
+    choices: tuple[Trial, ...] = ()
 
 
 def detector_of(parameters: DetectionParameters, labels: Sequence[str]) -> tuple[tuple[str, ...], Look]:
@@ -145,34 +90,34 @@ def measure(
         chosen = tally.add(truth, boxes)
         off_m += _place_errors(picture, boxes, np.append(rows, NONE)[chosen], parameters)
         progress()
+    matcher = _matcher_maker(parameters)
     return Measured(
         degradation=degradation,
         tally=tally,
         place_error_m=np.array(off_m),
         image_ms=np.array(image_ms),
+        choices=() if matcher is None else _choices(matcher, parameters, degradation, seeds, poses),
     )
 
 
-def floor_distance_m(seen: VisibleObjects, mount: CameraMount) -> Float64:
-    """float64 [n]: from the robot's centre to each object's, on the floor."""
-    return np.asarray(np.hypot(*base_from_optical(mount, seen.position_m)[:, :2].T), dtype=np.float64)
+def _matcher_maker(parameters: DetectionParameters) -> MatcherMaker | None:
+    """Only the learned back end tells things of one class apart."""
+    if parameters.back_end != "learned":
+        return None
+    from robustnav_nodes.detection.learned.instance_matcher import InstanceMatcher
+
+    detector = make_detector(parameters)
+    return lambda image, box_px, height_m: InstanceMatcher(detector, image, box_px, height_m)
 
 
-def _places(home: "Home", grid: "ClearanceGrid", seed: int, poses: int) -> Iterator[Pose2D]:
-    rng = np.random.default_rng([seed, poses])
-    rows, columns = np.nonzero(grid.cells_m >= STAND_CLEARANCE_M)
-    x_m, y_m = grid.x_m[columns], grid.y_m[rows]
-    for number in range(poses):
-        at, yaw_rad = int(rng.integers(len(x_m))), float(rng.uniform(-math.pi, math.pi))
-        if number % 2 == 1 and home.objects:
-            thing = home.objects[int(rng.integers(len(home.objects)))]
-            away_m = np.hypot(x_m - thing.x_m, y_m - thing.y_m)
-            near = np.flatnonzero((away_m >= AIMED_M[0]) & (away_m <= AIMED_M[1]))
-            if len(near):
-                at = int(near[rng.integers(len(near))])
-                bearing_rad = math.atan2(thing.y_m - y_m[at], thing.x_m - x_m[at])
-                yaw_rad = bearing_rad + float(rng.uniform(-AIM_ERROR_RAD, AIM_ERROR_RAD))
-        yield Pose2D(x_m=float(x_m[at]), y_m=float(y_m[at]), yaw_rad=yaw_rad)
+def _choices(
+    matcher: MatcherMaker, parameters: DetectionParameters, degradation: str, seeds: Sequence[int], poses: int
+) -> tuple[Trial, ...]:
+    """In homes of their own, that hold several of a class."""
+    found: list[Sighting] = []
+    for picture in pictures([seed + AFTER for seed in seeds], poses, degradation, look_alikes=True):
+        found += sightings(picture, parameters)
+    return tuple(trials(found, matcher, np.random.default_rng(list(seeds))))
 
 
 def _truth(picture: Picture, labels: Sequence[str]) -> tuple[TrueObjects, NDArray[np.int64]]:
@@ -210,7 +155,3 @@ def _of_classes(boxes: Boxes, labels: Sequence[int]) -> Boxes:
     """Only boxes of these classes: of the others nobody knows whether they are there."""
     kept = np.isin(boxes.label, np.array(labels, dtype=np.uint32))
     return Boxes(box_px=boxes.box_px[kept], score=boxes.score[kept], label=boxes.label[kept])
-
-
-def _pixels(numbers: NDArray[np.int32], seen: VisibleObjects) -> Float64:
-    return np.array([(numbers == instance).sum() for instance in seen.instance], dtype=np.float64)

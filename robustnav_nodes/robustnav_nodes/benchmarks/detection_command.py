@@ -121,6 +121,11 @@ def _show(console: Console, found: "Sequence[Measured]") -> None:
         "[dim]ECE: calibration error; off: of right detections, from the object's centre; ms: an image[/]\n"
     )
     _show_classes(console, found[0])
+    if rows[0]["instance_top1"] is not None:
+        console.print(
+            f"this one among five of its class: {rows[0]['instance_top1']:.2f} of "
+            f"{rows[0]['instance_trials']} times right"
+        )
     shares = found[0].tally.recall_by_range()
     told = ", ".join(f"{share.low:g} m {share.recall:.2f}" for share in shares)
     console.print(f"recall from a distance of {told}")

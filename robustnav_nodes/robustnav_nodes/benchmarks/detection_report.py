@@ -8,8 +8,9 @@ import numpy as np
 
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.benchmarks.detection_bench import Measured
+from robustnav_nodes.benchmarks.detection_instances import top1
 from robustnav_nodes.benchmarks.detection_scores import calibration_error
-from robustnav_nodes.benchmarks.detection_tally import ClassScore
+from robustnav_nodes.benchmarks.detection_tally import ALL, ClassScore
 
 
 def report_content(found: Sequence[Measured]) -> dict[str, Any]:
@@ -34,6 +35,7 @@ def overall_row(measured: Measured) -> dict[str, Any]:
         "reliability": [asdict(row) for row in bins],
         "recall_by_range": [asdict(row) for row in tally.recall_by_range()],
         "recall_by_visible_part": [asdict(row) for row in tally.recall_by_visible_part()],
+        "instance_trials": len(measured.choices),
         "image_ms_p95": _percentile(measured.image_ms, 95.0),
         "place_error_m_p50": _percentile(measured.place_error_m, 50.0),
         "place_error_m_p90": _percentile(measured.place_error_m, 90.0),
@@ -42,11 +44,12 @@ def overall_row(measured: Measured) -> dict[str, Any]:
 
 def _row(score: ClassScore, measured: Measured) -> dict[str, Any]:
     figures = asdict(score)
+    label = figures.pop("label")
     return {
-        "class": figures.pop("label"),
+        "class": label,
         "degradation": measured.degradation,
         **figures,
-        "instance_top1": None,
+        "instance_top1": top1(measured.choices, None if label == ALL else label),
         "image_ms": _percentile(measured.image_ms, 50.0),
     }
 
