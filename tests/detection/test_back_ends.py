@@ -34,7 +34,7 @@ def test_a_model_must_be_named_and_there(back_end: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("back_end", "package", "extra"),
-    [("learned", "torch", "learn"), ("onnx", "cv2", "onnx"), ("open_vocabulary", "torch", "open_vocabulary")],
+    [("learned", "torch", "learn"), ("onnx", "cv2", "onnx"), ("open_vocabulary", "torch", "open-vocabulary")],
 )
 def test_what_is_not_installed_is_named(
     back_end: str, package: str, extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -104,9 +104,12 @@ def _matcher_maker(parameters: DetectionParameters) -> MatcherMaker | None:
     """Only the learned back end tells things of one class apart."""
     if parameters.back_end != "learned":
         return None
+    from robustnav_nodes.detection.learned.detector import LearnedDetector
     from robustnav_nodes.detection.learned.instance_matcher import InstanceMatcher
 
     detector = make_detector(parameters)
+    if not isinstance(detector, LearnedDetector):
+        return None
     return lambda image, box_px, height_m: InstanceMatcher(detector, image, box_px, height_m)
 
 

@@ -27,7 +27,7 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
     try:
         return makers[parameters.back_end](parameters)
     except ImportError as error:
-        extra = {"learned": "learn"}.get(parameters.back_end, parameters.back_end)
+        extra = {"learned": "learn"}.get(parameters.back_end, parameters.back_end.replace("_", "-"))
         raise BadParameterError(
             f"back_end {parameters.back_end!r} cannot run here: {error}; "
             f"install what it stands on: pip install 'robustnav[{extra}]'"
