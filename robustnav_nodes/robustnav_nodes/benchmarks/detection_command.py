@@ -103,7 +103,7 @@ def _show(console: Console, found: "Sequence[Measured]") -> None:
         "precision",
         "recall",
         "F1",
-        "calibration error",
+        "ECE",
         "off, 90 %",
         "ms",
     ):
