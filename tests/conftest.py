@@ -69,7 +69,7 @@ def no_ghosts() -> Iterator[None]:
 
 
 def _open_files() -> int:
-    return len(os.listdir("/proc/self/fd"))
+    return sum(1 for _ in Path("/proc/self/fd").iterdir())
 
 
 def _marked_processes() -> list[int]:

@@ -8,7 +8,7 @@ from typing import Any
 from bags.reader import Bag
 from robustnav_msgs_py import contract, conversions
 from robustnav_msgs_py.errors import BadFileError, BadMessageError
-from robustnav_msgs_py.records import Decision, DialogueState, Episode, SearchState
+from robustnav_msgs_py.records import Decision, DetectorRecord, DialogueState, Episode, SearchState
 
 
 def _record(kind: type[Any]) -> Callable[[Any], Any]:
@@ -35,6 +35,8 @@ CONVERSIONS: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
         "detections/labels": conversions.labels_from_message,
         "belief/cloud": conversions.belief_from_message,
         "belief/map": conversions.map_from_message,
+        "belief/detector": _record(DetectorRecord),
+        "search/facts": conversions.text_from_message,
         "search/target": conversions.text_from_message,
         "search/state": _record(SearchState),
         "planner/decision": _record(Decision),

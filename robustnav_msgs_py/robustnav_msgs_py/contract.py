@@ -301,6 +301,15 @@ TOPICS = (
         meaning="the detections to look at in RViz or Foxglove",
     ),
     Topic(
+        name="detections/vision",
+        type="vision_msgs/msg/Detection3DArray",
+        qos=SENSOR,
+        speakers=("detection",),
+        listeners=(),
+        meaning="the detections once more, where vision_msgs is installed",
+        optional=True,
+    ),
+    Topic(
         name="belief/cloud",
         type="sensor_msgs/msg/PointCloud2",
         qos=LATCHED,
@@ -325,6 +334,22 @@ TOPICS = (
         meaning="entropy of the belief over its maximum, 0..1",
     ),
     Topic(
+        name="belief/detector",
+        type="diagnostic_msgs/msg/DiagnosticStatus",
+        qos=LATCHED,
+        speakers=("belief",),
+        listeners=(),
+        meaning="how good the detector is believed to be on the target's class",
+    ),
+    Topic(
+        name="search/facts",
+        type="std_msgs/msg/String",
+        qos=RECORD,
+        speakers=("dialogue",),
+        listeners=("belief",),
+        meaning="what the person says about a find: `confirmed mug`, `refuted mug`",
+    ),
+    Topic(
         name="search/target",
         type="std_msgs/msg/String",
         qos=LATCHED,
@@ -337,7 +362,7 @@ TOPICS = (
         type="diagnostic_msgs/msg/DiagnosticStatus",
         qos=LATCHED,
         speakers=("planner",),
-        listeners=("dialogue",),
+        listeners=("belief", "dialogue"),
         meaning="how the search stands",
     ),
     Topic(

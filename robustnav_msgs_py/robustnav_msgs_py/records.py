@@ -63,6 +63,34 @@ class Decision:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DetectorRecord:
+    """What is believed of the detector on class `label`, what was assumed, and the counts between the two.
+
+    Of looks that had the target in view it was `detected` and `missed`; of firings some were right.
+    """
+
+    label: str
+    precision: float
+    recall: float
+    precision_assumed: float
+    recall_assumed: float
+    detected: float
+    missed: float
+    true_firings: float
+    false_firings: float
+
+    @property
+    def summary(self) -> str:
+        """In a line."""
+        looks, firings = self.detected + self.missed, self.true_firings + self.false_firings
+        return (
+            f"precision {self.precision:.2f} (assumed {self.precision_assumed:.2f}), "
+            f"recall {self.recall:.2f} (assumed {self.recall_assumed:.2f}), "
+            f"after {looks:.0f} looks and {firings:.0f} firings"
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Episode:
     """Ground truth about a simulated run: what decided it and where the robot began."""
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_msgs_py.detector_statistics import ClassStatistics, RecallByRange
 from robustnav_nodes.belief.evidence import (
     F1Evidence,
     LikelihoodEvidence,
@@ -180,3 +180,22 @@ def test_the_belief_is_a_calibrated_probability(in_a_row):
 )
 def test_with_other_statistics_or_other_evidence_it_would_not_be(in_a_row, evidence):
     assert worst_calibration_error(in_a_row, evidence) > 10.0
+
+
+def test_a_silent_look_counts_less_against_far_places_where_recall_by_range_is_known():
+    """Recall 0.9 at 1 m, 0.5 at 2 m, 0 (taken as 0.05) at 4 m; by the mean alone 0.6 everywhere."""
+    by_range = RecallByRange(edges_m=(0.0, 2.0, 2.5, 5.5), recall=(0.9, 0.4, 0.0))
+    told = ClassStatistics(precision=0.8, recall=0.6, recall_by_range=by_range)
+    distance_m = np.array([1.0, 2.0, 4.0, 1.0])
+    factor = evidence_of(told, 0.1, BeliefParameters()).factor(IN_VIEW, SILENT, distance_m)
+    np.testing.assert_allclose(factor, [0.1, 0.5, 0.95, 1.0])
+    plain = evidence_of(ClassStatistics(precision=0.8, recall=0.6), 0.1, BeliefParameters())
+    np.testing.assert_allclose(plain.factor(IN_VIEW, SILENT, distance_m), [0.4, 0.4, 0.4, 1.0])
+
+
+def test_recall_by_range_leaves_the_rate_of_false_alarms_alone():
+    by_range = RecallByRange(edges_m=(0.0, 2.0), recall=(0.1,))
+    told = ClassStatistics(precision=0.8, recall=0.6, recall_by_range=by_range)
+    plain = ClassStatistics(precision=0.8, recall=0.6)
+    rates = [evidence_of(row, 0.1, BeliefParameters()).false_alarms for row in (told, plain)]
+    assert rates[0] == rates[1]

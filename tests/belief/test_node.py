@@ -1,13 +1,16 @@
 """The belief node: bad maps and clouds give a sentence, good ones a belief; nothing ends the node."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.records import DetectorRecord, SearchPhase, SearchState
 from robustnav_msgs_py.values import BeliefCloud, Detections, OccupancyMap, Odometry, Pose2D
+from robustnav_nodes.belief.learnt_statistics import read_observed
 from robustnav_nodes.belief.node import Belief
 from tests.bench import Bench
 
@@ -172,3 +175,54 @@ def test_a_belief_without_a_target_is_an_empty_map(bench: Bench, node: Belief) -
 
     assert bench.call(GetMap, "belief/get_map", GetMap.Request()).map.info.width == 0
     assert "no target" in bench.call(Trigger, "belief/reset", Trigger.Request()).message
+
+
+class Finding:
+    """A search that docks at the table and finds the mug there, as the belief hears of it."""
+
+    def __init__(self, bench: Bench, node: Belief) -> None:
+        self.search = Search(bench, node)
+        self.bench = bench
+        self.node = node
+        self.states = bench.speaker("search/state")
+        self.facts = bench.speaker("search/facts")
+        self.records = bench.hear("belief/detector")
+        bench.wait(lambda: self.records, "what is assumed")
+
+    def tell(self, phase: SearchPhase) -> None:
+        place = self.search.first.position_m[np.argmin(self.search.belief.probability)]  # it was in view
+        state = SearchState(
+            phase=phase, target="mug", episode=1, best_x_m=float(place[0]), best_y_m=float(place[1])
+        )
+        self.states.publish(wire.record_to_message(state))
+        self.bench.wait(lambda: self.node._search.phase is phase, f"the node to hear {phase}")
+
+    @property
+    def record(self) -> DetectorRecord:
+        return wire.record_from_message(self.records[-1], DetectorRecord)
+
+
+def test_what_the_person_says_of_a_find_is_learnt_and_kept(bench: Bench, tmp_path: Path) -> None:
+    """The one look missed the mug that the person confirms; the next search believes less recall."""
+    from rclpy.parameter import Parameter
+
+    path = tmp_path / "learnt.json"
+    node = bench.add(Belief(parameter_overrides=[Parameter("online_statistics_file", value=str(path))]))
+    node.trigger_configure()
+    node.trigger_activate()
+    finding = Finding(bench, node)
+    assert (finding.record.recall, finding.record.missed) == (finding.record.recall_assumed, 0)
+    finding.tell(SearchPhase.SEARCHING)
+    finding.tell(SearchPhase.FOUND)
+    finding.search.speakers["search/target"].publish(wire.text_to_message(""))
+    finding.facts.publish(wire.text_to_message("confirmed mug"))
+    bench.wait(lambda: finding.record.missed == 1, "the lesson")
+    assert finding.record.recall == pytest.approx(0.6 * 5 / 6)
+    assert read_observed(path)["mug"].missed == 1
+    assert node._learnt.of("mug").recall == finding.record.recall
+    assert "after 1 looks" in node.health.status("n", []).values["detector, mug"]
+
+
+def test_facts_that_cannot_be_read_are_a_sentence(bench: Bench, node: Belief) -> None:
+    bench.speaker("search/facts").publish(wire.text_to_message("it is in the kitchen"))
+    bench.wait(problem(node, "it is in the kitchen"), "a problem")

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadParameterError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.observation import place_densities
 from robustnav_nodes.belief.online_statistics import CountedLook, OnlineStatistics
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.location_belief import LocationBelief
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.prior import RegionFact, region_prior, told

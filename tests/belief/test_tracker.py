@@ -3,9 +3,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.tracker import BeliefTracker
 from robustnav_nodes.belief.view_gate import Verdict

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.export_pomp import TARGET_ID, export_pomp
 from robustnav_nodes.benchmarks.import_pomp import import_pomp
 from robustnav_nodes.benchmarks.pose_layout import lay_out

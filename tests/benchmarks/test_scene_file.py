@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.scene_file import read_scene, write_scene
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
 from robustnav_nodes.search_space.candidates import Candidates

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from bags.metrics import SearchMetrics
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError, BadParameterError, GraphError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks import graph_bench
 from robustnav_nodes.benchmarks.contestants import ALL, DEFAULT, NAMES, contestants
 from robustnav_nodes.benchmarks.export_pomp import TARGET_ID, export_pomp

@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 import pytest
 
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.benchmarks.contestants import NEAREST_M, contestants
 from robustnav_nodes.benchmarks.recorded_belief import RecordedBelief

@@ -3,7 +3,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene
 from robustnav_nodes.benchmarks.search_suite import (
     CLASSES,

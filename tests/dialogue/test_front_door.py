@@ -151,3 +151,29 @@ def test_why_in_every_phase_is_a_sentence() -> None:
 def test_where_are_you(yaw: float, word: str) -> None:
     assert describe_place(Pose2D(x_m=1.0, y_m=2.0, yaw_rad=yaw)).endswith(f"facing {word}.")
     assert "odometry" in describe_place(None)
+
+
+def found(door: FrontDoor) -> None:
+    door.hear("find the mug", None)
+    door.hear_search(SEARCHING)
+    door.hear_search(replace(SEARCHING, phase=SearchPhase.FOUND))
+
+
+@pytest.mark.parametrize(
+    ("line", "is_right"),
+    [("thank you", True), ("yes, that's it", True), ("no, that is not it", False), ("wrong one", False)],
+)
+def test_what_the_person_says_of_a_find_counts_once(door: FrontDoor, line: str, is_right: bool) -> None:
+    found(door)
+    reaction = door.hear(line, None)
+    assert (reaction.found, reaction.is_right) == ("mug", is_right)
+    assert reaction.answer
+    assert reaction.target is None
+    assert door.hear(line, None).is_right is None
+
+
+def test_thanks_for_nothing_say_nothing_of_the_detector(door: FrontDoor) -> None:
+    assert door.hear("thank you", None).is_right is None
+    found(door)
+    door.hear("find the book", None)
+    assert door.hear("no", None).is_right is None

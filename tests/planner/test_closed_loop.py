@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.records import SearchPhase, SearchState
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.tracker import BeliefTracker
 from robustnav_nodes.planner.parameters import VARIANTS

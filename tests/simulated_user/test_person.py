@@ -40,3 +40,14 @@ def test_the_target_is_one_of_a_kind_where_there_is_one() -> None:
     assert choose_target(objects[:2], 0) == "mug"
     assert choose_target([], 0) is None
     assert choose_target(objects, 5) == choose_target(list(reversed(objects)), 5)
+
+
+def test_what_is_not_there_is_not_it() -> None:
+    """A mug at (0, 0): told within a metre, and elsewhere."""
+    answers = {"x = 0.5 m, y = -0.6 m": "thank you", "x = -2.0 m, y = 0.0 m": "no, that is not it"}
+    for place, answer in answers.items():
+        person = Person("mug", ask_again_s=10.0, objects=[thing(1, "mug"), thing(2, "book")])
+        person.wait(0.0)
+        person.hear("I am looking for the mug.")
+        assert person.hear(f"I found the mug: it is near {place}, and I am looking at it.") == answer
+        assert person.mood is Mood.DONE

@@ -67,6 +67,7 @@ from robustnav_msgs_py.conversions.transforms import (
     transform_from_message,
     transform_to_message,
 )
+from robustnav_msgs_py.conversions.vision import detections_to_vision, vision_available
 
 __all__ = [
     "NANOSECONDS",
@@ -85,6 +86,7 @@ __all__ = [
     "detections_from_message",
     "detections_to_markers",
     "detections_to_message",
+    "detections_to_vision",
     "flag_from_message",
     "flag_to_message",
     "labels_from_message",
@@ -118,4 +120,5 @@ __all__ = [
     "velocity_to_message",
     "visible_from_message",
     "visible_to_message",
+    "vision_available",
 ]

@@ -5,8 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics, RecallByRange
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.observation import detected_factor, missed_factor, usable_f1
 from robustnav_nodes.belief.parameters import BeliefParameters
 
@@ -47,13 +47,14 @@ class LikelihoodEvidence:
     the belief holds is a probability that a threshold can be set against.
 
     recall: r near the robot; it falls in proportion to the distance, to recall * (1 - recall_loss) at
-    range_max_m.
+    range_max_m. Where `recall_by_range` is known, r at each distance is what it says instead.
     """
 
     recall: float
     false_alarms: float
     recall_loss: float = 0.0
     range_max_m: float = 1.0
+    recall_by_range: RecallByRange | None = None
 
     def factor(self, in_view: Bool, densities: Float64, distance_m: Float64 | None = None) -> Float64:
         """See Evidence."""
@@ -69,6 +70,8 @@ class LikelihoodEvidence:
         return np.where(in_view, 1.0 - recall + recall * reported, 1.0)
 
     def _recall_at(self, distance_m: Float64) -> Float64:
+        if self.recall_by_range is not None:
+            return self.recall_by_range.at(distance_m)
         share = np.clip(distance_m / self.range_max_m, 0.0, 1.0)
         return np.asarray(self.recall * (1.0 - self.recall_loss * share), dtype=np.float64)
 
@@ -95,9 +98,11 @@ def evidence_of(
             f1=usable_f1(statistics.f1, parameters.f1_min, parameters.f1_max),
             detection_floor=parameters.detection_floor,
         )
+    by_range, limits = statistics.recall_by_range, (parameters.recall_min, parameters.recall_max)
     return LikelihoodEvidence(
         recall=min(max(statistics.recall, parameters.recall_min), parameters.recall_max),
         false_alarms=false_alarms_a_look(statistics, share_in_view, parameters.false_alarms_min),
         recall_loss=parameters.recall_loss,
         range_max_m=parameters.range_max_m,
+        recall_by_range=by_range.within(*limits) if by_range is not None else None,
     )

@@ -9,14 +9,19 @@ import numpy as np
 from std_msgs.msg import Float64
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.detector_statistics import DetectorStatistics, read_detector_statistics
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount, base_from_optical, map_from_base
 from robustnav_msgs_py.pose_history import PoseHistory, check_frame
-from robustnav_msgs_py.values import Detections, OccupancyMap, Odometry
+from robustnav_msgs_py.records import SearchState
+from robustnav_msgs_py.values import OK, WARN, Detections, OccupancyMap, Odometry
 from robustnav_nodes.belief.belief_map import belief_map
-from robustnav_nodes.belief.detector_statistics import DetectorStatistics, read_detector_statistics
+from robustnav_nodes.belief.learnt_statistics import LearntStatistics, read_observed, write_observed
+from robustnav_nodes.belief.online_statistics import OnlineStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
+from robustnav_nodes.belief.search_lesson import SearchLesson
 from robustnav_nodes.belief.tracker import BeliefTracker
+from robustnav_nodes.belief.verdict import read_verdict
 from robustnav_nodes.belief.view_gate import Verdict
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
@@ -27,10 +32,12 @@ from robustnav_nodes.search_space.floor_inputs import FloorInputs
 class Belief(GraphNode[BeliefParameters]):
     """Keeps the belief about the target of the search.
 
-    Hears `map`, `search/candidates`, `odom`, `search/target`, `detections`, `detections/labels`. Says
-    `belief/cloud` after every observation, whether it counted or not: its stamp is that of the last
-    observation looked at, which is how the planner knows that its view is in. Says `belief/map` and
-    `belief/entropy` when the belief changed. Serves `belief/get_map` and `~/reset`.
+    Hears `map`, `search/candidates`, `odom`, `search/target`, `detections`, `detections/labels` and, to
+    learn how good the detector is, `search/state` and `search/facts`. Says `belief/cloud` after every
+    observation, whether it counted or not: its stamp is that of the last observation looked at, which is how
+    the planner knows that its view is in. Says `belief/map` and `belief/entropy` when the belief changed, and
+    `belief/detector`, what it believes of the detector on the target's class, when that did. Serves
+    `belief/get_map` and `~/reset`.
 
     A map that grows or changes takes over what is known; one in another frame, or time that begins anew, does
     not.
@@ -43,7 +50,13 @@ class Belief(GraphNode[BeliefParameters]):
         """Open the topics."""
         limits = self.parameters
         path = limits.detector_statistics_file
-        self._statistics = read_detector_statistics(Path(path)) if path else DetectorStatistics()
+        assumed = read_detector_statistics(Path(path)) if path else DetectorStatistics()
+        kept = limits.online_statistics_file
+        self._learnt = LearntStatistics(
+            assumed, limits.learn_pseudo_count, read_observed(Path(kept)) if kept else None
+        )
+        self._lesson: SearchLesson | None = None
+        self._search = SearchState()
         self._floor = FloorInputs(limits.mask_wait_s)
         self._view: CameraView | None = None
         self._tracker: BeliefTracker | None = None
@@ -55,12 +68,18 @@ class Belief(GraphNode[BeliefParameters]):
         self._cloud = self.publisher("belief/cloud")
         self._map = self.publisher("belief/map")
         self._entropy = self.publisher("belief/entropy")
+        self._detector = self.publisher("belief/detector")
         self.subscribe("map", wire.map_from_message, self._on_map)
         self.subscribe("search/candidates", wire.map_from_message, self._floor.heard_mask)
         self.subscribe("odom", wire.odometry_from_message, self._on_odometry)
         self.subscribe("search/target", wire.text_from_message, self._on_target)
         self.subscribe("detections/labels", wire.labels_from_message, self._on_labels)
         self.subscribe("detections", wire.detections_from_message, self._on_detections)
+        if limits.learn_statistics:
+            self.subscribe(
+                "search/state", partial(wire.record_from_message, kind=SearchState), self._on_search
+            )
+            self.subscribe("search/facts", wire.text_from_message, self._on_fact)
         self.serve("belief/get_map", self._get_map)
         self.serve("~/reset", self._reset)
         self.every(limits.floor_check_s, self._build, steady=True)
@@ -86,6 +105,8 @@ class Belief(GraphNode[BeliefParameters]):
             self._start()
             return
         self._tracker.move_to(view)
+        if self._lesson is not None:
+            self._lesson.move_to(view.candidates)
         self._say_cloud()
         self._say_summary()
 
@@ -102,9 +123,14 @@ class Belief(GraphNode[BeliefParameters]):
         self._tracker = None
         if self._view is not None and self._target:
             self._tracker = BeliefTracker(
-                view=self._view, statistics=self._statistics.of(self._target), parameters=self.parameters
+                view=self._view, statistics=self._learnt.of(self._target), parameters=self.parameters
             )
+            self._lesson = SearchLesson(
+                self._target, self._learnt.online(self._target), self._view.candidates
+            )
+            self._on_search(self._search)  # the planner may have heard of the target first
             self._stamp_ns = 0
+            self._say_detector(self._target)
             self._say_cloud()
             self._say_summary()
 
@@ -144,10 +170,42 @@ class Belief(GraphNode[BeliefParameters]):
             angular_rad_s=odometry.angular_rad_s,
         )
         self._stamp_ns = detections.stamp_ns
+        look = self._tracker.last_look
+        if verdict is Verdict.COUNTED and self._lesson is not None and look is not None:
+            self._lesson.look(look)
         self.health.count(f"observations {verdict}")
         self._say_cloud()
         if verdict is Verdict.COUNTED:
             self._say_summary()
+
+    def _on_search(self, search: SearchState) -> None:
+        self._search = search
+        if self._lesson is not None:
+            self._learn(self._lesson.label, self._lesson.hear(search))
+
+    def _on_fact(self, line: str) -> None:
+        label, confirmed = read_verdict(line)
+        if self._lesson is not None and self._lesson.label == label:
+            self._learn(label, self._lesson.hear_person(confirmed=confirmed))
+
+    def _learn(self, label: str, online: OnlineStatistics | None) -> None:
+        """Believe this of the detector from the next search on."""
+        if online is None:
+            return
+        self._learnt.learn(label, online)
+        self._say_detector(label)
+        kept = self.parameters.online_statistics_file
+        if kept:
+            write_observed(Path(kept), self._learnt.observed)
+
+    def _say_detector(self, label: str) -> None:
+        record, complaint = self._learnt.record(label), self._learnt.complaint(label)
+        self._detector.publish(
+            wire.record_to_message(record, level=WARN if complaint else OK, summary=complaint)
+        )
+        self.health.figure(f"detector, {label}", record.summary)
+        if complaint:
+            self.health.problem("detector statistics", complaint)
 
     def _say_cloud(self) -> None:
         if self._tracker is not None and self._view is not None:

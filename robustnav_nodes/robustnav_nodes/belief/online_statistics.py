@@ -11,9 +11,9 @@ over all poses (0.83 for 0.78 in the medium scenes), recall does not.
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 
 # Of the densities, 1 at the detected place: 2.4 standard deviations, beyond which 5 % of the detections of a
 # target lie on the floor.
@@ -27,6 +27,16 @@ class CountedLook:
 
     in_view: Bool
     densities: Float64
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Observed:
+    """Counts of what was seen, without any prior."""
+
+    detected: float = 0.0
+    missed: float = 0.0
+    true_firings: float = 0.0
+    false_firings: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +60,24 @@ class OnlineStatistics:
             missed=pseudo_count * (1.0 - recall),
             true_firings=pseudo_count * precision,
             false_firings=pseudo_count * (1.0 - precision),
+        )
+
+    def with_observed(self, seen: Observed) -> "OnlineStatistics":
+        """The posterior after what was seen, for a prior."""
+        return OnlineStatistics(
+            detected=self.detected + seen.detected,
+            missed=self.missed + seen.missed,
+            true_firings=self.true_firings + seen.true_firings,
+            false_firings=self.false_firings + seen.false_firings,
+        )
+
+    def observed_since(self, prior: "OnlineStatistics") -> Observed:
+        """What was seen since `prior`; counts are whole, so rounding takes off what adding floats left."""
+        return Observed(
+            detected=round(self.detected - prior.detected, 6),
+            missed=round(self.missed - prior.missed, 6),
+            true_firings=round(self.true_firings - prior.true_firings, 6),
+            false_firings=round(self.false_firings - prior.false_firings, 6),
         )
 
     @property

@@ -27,7 +27,8 @@ class BeliefParameters(SearchSpaceParameters):
     )
     recall_loss: float = parameter(
         0.0,
-        "likelihood: part of the recall that is lost at range_max_m, in proportion nearer by",
+        "likelihood: part of the recall that is lost at range_max_m, in proportion nearer by; not where the "
+        "statistics tell recall by range",
         low=0.0,
         high=1.0,
     )
@@ -53,7 +54,19 @@ class BeliefParameters(SearchSpaceParameters):
         1e-6, "no place's probability falls below this part of 1/k", low=1e-12, high=0.1
     )
     detector_statistics_file: str = parameter(
-        "", "JSON file of precision and recall per class; empty: defaults"
+        "",
+        "JSON file of precision and recall per class, as `robustnav bench detection --statistics` writes "
+        "it; empty: defaults",
+    )
+
+    learn_statistics: bool = parameter(
+        True, "learn how good the detector is from finds that the dock or the person confirms or refutes"
+    )
+    learn_pseudo_count: float = parameter(
+        5.0, "the statistics at the start are worth", unit="looks", low=0.1, high=10_000.0
+    )
+    online_statistics_file: str = parameter(
+        "", "JSON file in which what was learnt is kept from run to run; empty: forgotten at the end"
     )
 
     min_translation_m: float = parameter(

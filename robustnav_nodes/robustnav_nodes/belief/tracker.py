@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Float64, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.evidence import evidence_of
 from robustnav_nodes.belief.location_belief import LocationBelief
 from robustnav_nodes.belief.observation import place_densities
+from robustnav_nodes.belief.online_statistics import CountedLook
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.view_gate import Verdict, ViewGate
 from robustnav_nodes.search_space.camera_view import CameraView
@@ -35,6 +36,7 @@ class BeliefTracker:
         self._statistics = statistics
         self._evidence = evidence_of(statistics, view.share_in_view(), parameters)
         self._gate = ViewGate(parameters)
+        self.last_look: CountedLook | None = None  # that counted
         if prior is None:
             self.belief = LocationBelief.uniform(view.candidates)
         else:  # C4: no location begins below the floor
@@ -74,6 +76,7 @@ class BeliefTracker:
         in_view = self._view.visible(robot)
         candidates = self._view.candidates
         densities = place_densities(candidates, in_view, places[:, :2], limits.detection_sigma_m)
+        self.last_look = CountedLook(in_view=in_view, densities=densities)
         distance_m = np.hypot(candidates.x_m - robot.x_m, candidates.y_m - robot.y_m)
         factor = self._evidence.factor(in_view, densities, distance_m)
         self.belief = self.belief.updated(factor, limits.probability_floor)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadParameterError
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.planner.parameters import PlannerParameters
 

@@ -21,9 +21,9 @@ from scipy.io import loadmat
 from scipy.io.matlab import MatReadError
 from scipy.sparse import csgraph
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Bool, Float64, OccupancyMap, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
 from robustnav_nodes.benchmarks.search_suite import DESTINATION_M
 from robustnav_nodes.benchmarks.text_files import read_instance_names, read_json_object

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.pose_layout import lay_out
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget, Sighting
 from robustnav_nodes.benchmarks.text_files import read_instance_names, read_json_object, read_lines

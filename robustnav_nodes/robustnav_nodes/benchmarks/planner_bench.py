@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.parameters import BeliefParameters
 from robustnav_nodes.belief.tracker import BeliefTracker
 from robustnav_nodes.belief.view_gate import Verdict

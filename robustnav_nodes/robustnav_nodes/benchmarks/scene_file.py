@@ -26,9 +26,9 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_msgs_py.values import Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.benchmarks.search_scene import DetectionRecord, SearchScene, SearchTarget
 from robustnav_nodes.search_space.candidates import Candidates
 from robustnav_nodes.search_space.observability import Observability

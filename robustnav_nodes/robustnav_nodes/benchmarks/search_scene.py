@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.values import Bool, Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.search_space.space import SearchSpace
 
 Sighting = tuple[int, NDArray[np.int32], Float64]  # a detection: its pose, candidates, and their weights

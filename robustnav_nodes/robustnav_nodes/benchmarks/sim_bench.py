@@ -1,11 +1,9 @@
 """How fast the simulator is: pictures, steps, homes, memory; on one core."""
 
 import math
-import os
 import resource
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import TYPE_CHECKING
@@ -14,6 +12,7 @@ import numpy as np
 
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Pose2D
+from robustnav_nodes.benchmarks.one_core import one_core
 
 if TYPE_CHECKING:  # the simulator stands on this package
     from sim_bridge.simulation import Simulation
@@ -50,7 +49,7 @@ def sim_figures(seeds: Sequence[int]) -> SimFigures:
     from sim_bridge.parameters import SimParameters
     from sim_bridge.simulation import Simulation
 
-    with _one_core():
+    with one_core():
         builds = []
         large: Simulation | None = None
         for seed in [seeds[0], *seeds]:  # the first one compiles
@@ -84,17 +83,6 @@ def sim_figures(seeds: Sequence[int]) -> SimFigures:
         hard_home_build_s=max(builds[1:]),
         rss_mb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
     )
-
-
-@contextmanager
-def _one_core() -> Iterator[None]:
-    """Keep this process on one core."""
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {min(before)})
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, before)
 
 
 def _bodies(simulation: "Simulation") -> int:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from robustnav_msgs_py.detector_statistics import ClassStatistics
 from robustnav_msgs_py.values import Float64
-from robustnav_nodes.belief.detector_statistics import ClassStatistics
 from robustnav_nodes.belief.online_statistics import CountedLook, OnlineStatistics
 from robustnav_nodes.belief.prior import RegionFact, region_prior, told
 from robustnav_nodes.benchmarks.blocked_ways import with_blocked_ways

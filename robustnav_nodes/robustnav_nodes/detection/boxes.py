@@ -21,3 +21,8 @@ class Boxes:
 
     def __len__(self) -> int:
         return len(self.score)
+
+    def above(self, score_min: float) -> "Boxes":
+        """Those with at least this score."""
+        kept = self.score >= score_min
+        return Boxes(box_px=self.box_px[kept], score=self.score[kept], label=self.label[kept])

@@ -7,7 +7,7 @@ from robustnav_msgs_py.values import ColorImage, DepthImage, VisibleObjects
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ImageParts:
-    """What belongs to one stamp; None has not come (colour may never: nobody needs it to detect)."""
+    """What belongs to one stamp; None has not come, and may never where it is not needed."""
 
     stamp_ns: int
     color: ColorImage | None = None
@@ -18,13 +18,14 @@ class ImageParts:
 class LatestImages:
     """Keeps the parts of the latest few images until one is complete; older ones are then forgotten.
 
-    An image is complete when its depth and what is seen in it have come. Never a queue: a complete image
-    drops every older one. A stamp far behind the newest means that time began anew (the simulation was
-    reset): everything kept is forgotten.
+    An image is complete when its depth and, for a back end that looks at the pixels (`by_color`), its colour
+    have come, for another what is seen in it. Never a queue: a complete image drops every older one. A stamp
+    far behind the newest means that time began anew (the simulation was reset): everything kept is forgotten.
     """
 
-    def __init__(self, keep: int, restart_ns: int = 1_000_000_000) -> None:
+    def __init__(self, keep: int, *, by_color: bool = False, restart_ns: int = 1_000_000_000) -> None:
         self._keep = keep
+        self._by_color = by_color
         self._restart_ns = restart_ns
         self._parts: dict[int, ImageParts] = {}
         self._done_ns: int | None = None
@@ -52,7 +53,8 @@ class LatestImages:
         self._parts[stamp_ns] = parts
         while len(self._parts) > self._keep:
             del self._parts[min(self._parts)]
-        if parts.depth is None or parts.seen is None:
+        looked_at = parts.color if self._by_color else parts.seen
+        if parts.depth is None or looked_at is None:
             return None
         self._parts = {stamp: kept for stamp, kept in self._parts.items() if stamp > stamp_ns}
         self._done_ns = stamp_ns

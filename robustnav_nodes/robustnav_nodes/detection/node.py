@@ -1,27 +1,55 @@
 """The detection node: camera images in, detections out."""
 
 import sys
-import time
+from dataclasses import dataclass
+from functools import partial
 
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
-from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, VisibleObjects
+from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Detections, VisibleObjects
+from robustnav_nodes.detection.back_ends import make_detector
+from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.dials import dials_by_class
 from robustnav_nodes.detection.drawing import draw_boxes
+from robustnav_nodes.detection.image_complaints import check_registered, color_complaint, depth_complaint
 from robustnav_nodes.detection.latest_images import ImageParts, LatestImages
-from robustnav_nodes.detection.parameters import DetectionParameters
+from robustnav_nodes.detection.pace import Pace
+from robustnav_nodes.detection.parameters import TRUTH, DetectionParameters
+from robustnav_nodes.detection.pixel_detector import PixelDetector
 from robustnav_nodes.detection.placement import place_boxes
 from robustnav_nodes.detection.truth_detector import TruthDetector
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Image:
+    """A whole image, when it came (`steady_s`), and the camera that took it."""
+
+    depth: DepthImage
+    color: ColorImage | None
+    camera: CameraModel
+    came_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Waiting:
+    """An image whose pixels are to be looked at."""
+
+    image: _Image
+    color: ColorImage
+
+
 class Detection(GraphNode[DetectionParameters]):
     """Says which objects each image shows, and where they are.
 
-    Hears `camera/image_raw`, `camera/depth/image_raw`, `camera/camera_info`, `odom` and, for the `truth`
-    back end, `truth/visible` and `truth/labels`. Says `detections` (also when it sees nothing: silence is
-    evidence), `detections/labels` and, while somebody listens, `detections/boxes` and `detections/markers`.
+    Hears `camera/image_raw`, `camera/depth/image_raw`, `camera/camera_info` and, for the `truth` back end,
+    `odom`, `truth/visible` and `truth/labels`. Says `detections` (also when it sees nothing: silence is
+    evidence), `detections/labels`, `detections/vision` where vision_msgs is installed and, while somebody
+    listens, `detections/boxes` and `detections/markers`.
+
+    A back end that looks at pixels is made, and looks, in a thread of its own. It gets the latest whole image
+    when it is done with the one before; those in between are dropped and counted.
     """
 
     executable = "detection"
@@ -29,42 +57,62 @@ class Detection(GraphNode[DetectionParameters]):
 
     def configure(self) -> None:
         """Open the topics."""
-        self._images = LatestImages(self.parameters.image_wait)
+        self._by_truth = self.parameters.back_end == TRUTH
+        self._configured = self.parameters
+        self._images = LatestImages(self.parameters.image_wait, by_color=not self._by_truth)
         self._poses = PoseHistory()
         self._camera: CameraModel | None = None
         self._labels: tuple[str, ...] = ()
-        self._detector: TruthDetector | None = None
+        self._truth: TruthDetector | None = None
+        self._looker: PixelDetector | None = None
+        self._next: _Waiting | None = None
+        self._looked_ns: int | None = None
+        self._unplaced = 0
+        self._pace = Pace()
+        self._worker = self.worker("detector", failed=self._look_on)
         self._detections = self.publisher("detections")
         self._names = self.publisher("detections/labels")
         self._boxes = self.publisher("detections/boxes")
         self._markers = self.publisher("detections/markers")
+        self._vision = self.publisher("detections/vision") if wire.vision_available() else None
         self.subscribe("camera/image_raw", wire.color_from_message, self._on_color)
         self.subscribe("camera/depth/image_raw", wire.depth_from_message, self._on_depth)
         self.subscribe("camera/camera_info", wire.camera_from_message, self._on_camera)
-        self.subscribe("odom", wire.odometry_from_message, self._poses.add)
-        self.subscribe("truth/labels", wire.labels_from_message, self._on_labels)
-        self.subscribe("truth/visible", wire.visible_from_message, self._on_visible)
+        if self._by_truth:
+            self.subscribe("odom", wire.odometry_from_message, self._poses.add)
+            self.subscribe("truth/labels", wire.labels_from_message, self._on_labels)
+            self.subscribe("truth/visible", wire.visible_from_message, self._on_visible)
+        else:
+            self.every(self.parameters.load_again_s, self._load, steady=True)
 
     def activate(self) -> None:
-        """Say the class names again: a latched word said while inactive is lost."""
+        """Say the class names again (a latched word said while inactive is lost), and make the back end."""
         if self._labels:
             self._names.publish(wire.labels_to_message(self._labels))
+        if not self._by_truth:
+            self._load()
 
     def parameters_changed(self) -> None:
         """Turn the dials while it runs."""
-        if self._labels:
-            self._make_detector()
+        if self._labels and self._by_truth:
+            self._make_truth()
+        if self.parameters.back_end != self._configured.back_end:
+            self.health.problem(
+                "parameter back_end",
+                f"{self.parameters.back_end!r} is used from the next time that the node is configured; "
+                f"until then {self._configured.back_end!r} looks",
+            )
 
     def _on_camera(self, camera: CameraModel) -> None:
         self._camera = camera
 
     def _on_labels(self, labels: tuple[str, ...]) -> None:
         self._labels = labels
-        self._make_detector()
+        self._make_truth()
         self._names.publish(wire.labels_to_message(labels))
 
-    def _make_detector(self) -> None:
-        self._detector = TruthDetector(
+    def _make_truth(self) -> None:
+        self._truth = TruthDetector(
             labels=self._labels,
             dials=dials_by_class(self.parameters, self._labels),
             seed=self.parameters.seed,
@@ -72,43 +120,111 @@ class Detection(GraphNode[DetectionParameters]):
             view_headings=self.parameters.view_headings,
         )
 
+    def _load(self) -> None:
+        """Make the back end, unless it is there: weights may come later, or a parameter be set right."""
+        if self._looker is None and not self._worker.busy:
+            self._worker.submit(partial(make_detector, self._configured), self._on_looker)
+
+    def _on_looker(self, looker: PixelDetector) -> None:
+        self._looker, self._labels = looker, looker.labels
+        self._names.publish(wire.labels_to_message(looker.labels))
+        self._look_on()
+
     def _on_color(self, image: ColorImage) -> None:
-        self._look(self._images.add(image.stamp_ns, color=image))
+        self._take(self._images.add(image.stamp_ns, color=image))
 
     def _on_depth(self, image: DepthImage) -> None:
-        self._look(self._images.add(image.stamp_ns, depth=image))
+        self._take(self._images.add(image.stamp_ns, depth=image))
 
     def _on_visible(self, seen: VisibleObjects) -> None:
-        self._look(self._images.add(seen.stamp_ns, seen=seen))
+        self._take(self._images.add(seen.stamp_ns, seen=seen))
 
-    def _look(self, parts: ImageParts | None) -> None:
-        if parts is None or parts.seen is None or parts.depth is None:
+    def _take(self, parts: ImageParts | None) -> None:
+        """A whole image, if it is one."""
+        if parts is None:
             return
-        odometry = self._poses.at(parts.stamp_ns)
-        if self._detector is None or self._camera is None or odometry is None:
+        if self._camera is None:
+            self._unplaced += 1
+            if self._unplaced > self.parameters.image_wait:  # the first few may be faster
+                self.health.problem(
+                    "camera/camera_info",
+                    f"{self._unplaced} images have come and no camera_info, without which nothing can be "
+                    "placed; does the camera's driver publish it?",
+                )
             return
-        began_s = time.perf_counter()
-        boxes = self._detector.detect(parts.seen, odometry.pose, self._camera)
-        detections, dropped = place_boxes(
-            boxes,
-            parts.depth,
-            self._camera,
-            part=self.parameters.depth_part,
-            samples_min=self.parameters.depth_samples_min,
-        )
+        if parts.depth is None:
+            return
+        image = _Image(depth=parts.depth, color=parts.color, camera=self._camera, came_s=self.steady_s())
+        if parts.seen is not None:
+            self._see(image, parts.seen)
+        elif parts.color is not None:
+            self._wait(image, parts.color)
+
+    # By ground truth: at once.
+
+    def _see(self, image: _Image, seen: VisibleObjects) -> None:
+        odometry = self._poses.at(seen.stamp_ns)
+        if self._truth is not None and odometry is not None:
+            self._say(image, self._truth.detect(seen, odometry.pose, image.camera))
+
+    # By the pixels: in the worker.
+
+    def _wait(self, image: _Image, color: ColorImage) -> None:
+        """The image is the next to be looked at; one that waited for the same is dropped."""
+        check_registered(color, image.camera)
+        complaint = color_complaint(color)
+        if complaint:
+            self.health.problem("camera/image_raw", complaint)
+        stamp_ns, rate_hz = color.stamp_ns, self.parameters.rate_max_hz
+        since_ns = None if self._looked_ns is None else stamp_ns - self._looked_ns
+        if since_ns is not None and rate_hz > 0.0 and 0 <= since_ns < wire.NANOSECONDS / rate_hz:
+            self.health.count("images left out for the rate")
+            return
+        if self._next is not None and self._looker is not None:
+            self.health.count("images dropped while it looked")
+        self._next = _Waiting(image=image, color=color)
+        self._look_on()
+
+    def _look_on(self) -> None:
+        """Look at the image that waits, if there is one and the worker is free."""
+        waiting, looker = self._next, self._looker
+        if waiting is None or looker is None or self._worker.busy:
+            return
+        self._next, self._looked_ns = None, waiting.color.stamp_ns
+        self._worker.submit(partial(looker.detect, waiting.color), partial(self._on_boxes, waiting.image))
+
+    def _on_boxes(self, image: _Image, boxes: Boxes) -> None:
+        try:
+            self._say(image, boxes.above(self.parameters.score_min))
+        finally:  # a bad depth image must not keep the next one waiting
+            self._look_on()
+
+    # Words.
+
+    def _say(self, image: _Image, boxes: Boxes) -> None:
+        detections, dropped = place_boxes(boxes, image.depth, image.camera, self.parameters)
+        complaint = depth_complaint(image.depth)
         if dropped:
-            self.health.problem(
-                "camera/depth/image_raw", f"{dropped} of {len(boxes)} detections have no valid depth; dropped"
-            )
+            complaint = f"{dropped} of {len(boxes)} detections have no valid depth; dropped"
+        if complaint:
+            self.health.problem("camera/depth/image_raw", complaint)
         self._detections.publish(wire.detections_to_message(detections))
+        if self._vision is not None:
+            self._vision.publish(wire.detections_to_vision(detections, self._labels, image.camera))
+        self._pace.add(image.came_s, self.steady_s())
         self.health.count("images")
         self.health.figure("objects in the last image", len(detections))
-        self.health.figure("last image took ms", (time.perf_counter() - began_s) * 1e3)
+        for name, value in self._pace.figures().items():
+            self.health.figure(name, value)
+        self._draw(image, detections)
+
+    def _draw(self, image: _Image, detections: Detections) -> None:
+        """What is to be looked at, while somebody does."""
         if self._markers.get_subscription_count():
             lifetime_s = self.parameters.marker_lifetime_s
             self._markers.publish(wire.detections_to_markers(detections, self._labels, lifetime_s))
-        if parts.color is not None and self._boxes.get_subscription_count():
-            self._boxes.publish(wire.color_to_message(draw_boxes(parts.color, detections, self._labels)))
+        if image.color is not None and self._boxes.get_subscription_count():
+            self._boxes.publish(wire.color_to_message(draw_boxes(image.color, detections, self._labels)))
 
 
 def main() -> int:

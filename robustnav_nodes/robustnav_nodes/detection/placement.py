@@ -3,21 +3,29 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadMessageError
-from robustnav_msgs_py.values import CameraModel, DepthImage, Detections
+from robustnav_msgs_py.values import CameraModel, DepthImage, Detections, Float32
 from robustnav_nodes.detection.boxes import Boxes
+from robustnav_nodes.detection.parameters import DetectionParameters
+
+SAMPLES_PER_AXIS = 48  # of a larger box, pixels are left out evenly
+EDGE_WEIGHT = 0.05  # of a sample at the edge of its box, over one in the middle
 
 
 def place_boxes(
-    boxes: Boxes, depth: DepthImage, camera: CameraModel, *, part: float, samples_min: int
+    boxes: Boxes, depth: DepthImage, camera: CameraModel, parameters: DetectionParameters
 ) -> tuple[Detections, int]:
     """Each box's object in the optical frame, and how many boxes had no valid depth and were dropped.
 
-    The object's depth is the median of the valid samples in the middle `part` of its box (its edges show
-    what is behind); its place is the box's centre at that depth. A box with fewer than `samples_min` valid
-    samples is dropped: no place is better than a wrong one. Raises BadMessageError where the depth image is
-    not of the camera's size.
+    A box shows its object and what is behind, beside and sometimes in front of it. Its valid depths fall
+    into surfaces, parted by gaps of depth_gap_m; the object is the nearest surface that covers depth_cover of
+    the box, where the middle of the box counts for more than its edge. Its depth is that surface's median,
+    and depth_behind of the box's smaller side farther, as the middle of a thing lies behind its face; its
+    place is the box's centre at that depth. A box with fewer than depth_samples_min valid samples is dropped:
+    no place is better than a wrong one. Raises BadMessageError where the depth image is not of the camera's
+    size.
     """
     height, width = depth.depth_m.shape
     if (width, height) != (camera.width, camera.height):
@@ -26,15 +34,14 @@ def place_boxes(
         )
     kept: list[int] = []
     places: list[tuple[float, float, float]] = []
-    for index, (u_min, v_min, u_max, v_max) in enumerate(boxes.box_px):
-        u, v = (u_min + u_max) / 2.0, (v_min + v_max) / 2.0
-        rows = _middle(v, v_max - v_min, part, height)
-        columns = _middle(u, u_max - u_min, part, width)
-        samples = depth.depth_m[rows, columns]
-        valid = samples[np.isfinite(samples) & (samples > 0.0)]
-        if len(valid) < samples_min:
+    for index, box in enumerate(boxes.box_px):
+        face_m = _face_m(depth.depth_m, box, parameters)
+        if face_m is None:
             continue
-        z = float(np.median(valid))
+        u_min, v_min, u_max, v_max = (float(side) for side in box)
+        side_m = face_m * min((u_max - u_min) / camera.fx, (v_max - v_min) / camera.fy)
+        z = face_m + parameters.depth_behind * side_m
+        u, v = (u_min + u_max) / 2.0, (v_min + v_max) / 2.0
         kept.append(index)
         places.append(((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z))
     detections = Detections(
@@ -48,8 +55,37 @@ def place_boxes(
     return detections, len(boxes) - len(kept)
 
 
-def _middle(centre: float, size: float, part: float, limit: int) -> slice:
-    """The middle `part` of a side of a box, at least one pixel, inside 0..limit."""
-    first = math.floor(centre - part * size / 2.0)
-    last = max(first + 1, math.ceil(centre + part * size / 2.0))
-    return slice(min(max(first, 0), limit - 1), max(min(last, limit), 1))
+def _face_m(depth_m: Float32, box: Float32, parameters: DetectionParameters) -> float | None:
+    """Depth of the surface that the object in `box` shows; None where too few samples are valid."""
+    height, width = depth_m.shape
+    columns, rows = _pixels(box[0], box[2], width), _pixels(box[1], box[3], height)
+    samples = depth_m[np.ix_(rows, columns)]
+    weight = 1.0 - np.maximum(
+        _off_centre(rows, box[1], box[3])[:, np.newaxis], _off_centre(columns, box[0], box[2])
+    )
+    valid = np.isfinite(samples) & (samples > 0.0)
+    near_first = samples[valid].astype(np.float64)
+    if len(near_first) < parameters.depth_samples_min:
+        return None
+    order = np.argsort(near_first, kind="stable")
+    near_first, weights = near_first[order], np.maximum(weight[valid][order], EDGE_WEIGHT)
+    ends = np.append(np.flatnonzero(np.diff(near_first) > parameters.depth_gap_m) + 1, len(near_first))
+    begins = np.concatenate([[0], ends[:-1]])
+    covers = np.add.reduceat(weights, begins) >= parameters.depth_cover * weights.sum()
+    if not covers.any():  # many small surfaces: none of them is the object alone
+        return float(np.median(near_first))
+    first = int(np.argmax(covers))
+    return float(np.median(near_first[begins[first] : ends[first]]))
+
+
+def _pixels(low: float, high: float, limit: int) -> NDArray[np.int64]:
+    """The pixels of a side of a box, at least one, inside 0..limit."""
+    begin = min(max(math.floor(low), 0), limit - 1)
+    end = max(min(math.ceil(high), limit), begin + 1)
+    return np.arange(begin, end, math.ceil((end - begin) / SAMPLES_PER_AXIS), dtype=np.int64)
+
+
+def _off_centre(pixels: NDArray[np.int64], low: float, high: float) -> NDArray[np.float64]:
+    """How far pixels lie from the middle of a box's side: 0 there, 1 at its ends."""
+    half = max((high - low) / 2.0, 0.5)
+    return np.asarray(np.abs(pixels + 0.5 - (low + high) / 2.0) / half, dtype=np.float64)

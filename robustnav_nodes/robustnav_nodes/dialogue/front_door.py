@@ -15,10 +15,15 @@ UNDER_WAY = (SearchPhase.SEARCHING, SearchPhase.DOCKING)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What follows from a line: an answer, and a target for the search ("" stops it, None leaves it)."""
+    """What follows from a line: an answer, and a target for the search ("" stops it, None leaves it).
+
+    is_right: of the class `found`, whether the person says that the find was right; None: nothing was said.
+    """
 
     answer: str
     target: str | None = None
+    found: str = ""
+    is_right: bool | None = None
 
 
 class FrontDoor:
@@ -31,6 +36,7 @@ class FrontDoor:
         self._decision: Decision | None = None
         self._state = DialogueState()
         self._asked_for = ""  # the target of a search that has not begun yet
+        self._found = ""  # what was found last, until the person says whether it is right
 
     @property
     def state(self) -> DialogueState:
@@ -63,6 +69,7 @@ class FrontDoor:
         if same or search.target != self._state.target or not search.target:
             return None
         if search.phase is SearchPhase.FOUND:
+            self._found = search.target
             return self._ended(
                 f"I found the {search.target}: it is near x = {search.best_x_m:.1f} m, "
                 f"y = {search.best_y_m:.1f} m, and I am looking at it. "
@@ -105,13 +112,30 @@ class FrontDoor:
             case RequestKind.WHY:
                 return Reaction(answer=explain(self._search, self._decision))
             case RequestKind.THANKS:
-                return Reaction(answer="You are welcome.")
+                return self._judged("You are welcome.", is_right=True)
+            case RequestKind.RIGHT:
+                return self._judged("Good.", is_right=True)
+            case RequestKind.WRONG:
+                return self._wrong()
             case RequestKind.GREETING | RequestKind.HELP:
                 return Reaction(answer=f"Hello. {self._offer()}")
             case RequestKind.UNKNOWN:
                 if request.thing and matching_class(request.thing, self._names) is not None:
                     return self._find(request.thing)
                 return Reaction(answer=f"I did not understand that. {self._offer()}")
+
+    def _judged(self, answer: str, *, is_right: bool) -> Reaction:
+        """The person is content with the last find, or not; that counts once."""
+        found, self._found = self._found, ""
+        return Reaction(answer=answer, found=found, is_right=is_right if found else None)
+
+    def _wrong(self) -> Reaction:
+        if not self._found:
+            return Reaction(answer=f"I have not found anything that could be wrong. {self._offer()}")
+        return self._judged(
+            f"I am sorry. I trust my eyes less with the {self._found} now; ask me again, and I look anew.",
+            is_right=False,
+        )
 
     def _find(self, thing: str) -> Reaction:
         if not self._names:
@@ -123,6 +147,7 @@ class FrontDoor:
             return Reaction(answer=f"I do not know what {_quoted(thing)} looks like. {self._offer()}")
         if self._search.phase in UNDER_WAY and name == self._search.target == self._state.target:
             return Reaction(answer=f"I am still looking for the {name}.")
+        self._found = ""
         return Reaction(answer=f"I am looking for the {name}.", target=name)
 
     def _offer(self) -> str:

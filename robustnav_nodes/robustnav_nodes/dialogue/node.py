@@ -16,7 +16,7 @@ class Dialogue(GraphNode[DialogueParameters]):
     """The front door: "find the mug", "stop", "where are you?", "why?".
 
     Hears `chat/from_user`, `detections/labels`, `search/state`, `planner/decision`, `odom`. Says
-    `chat/to_user`, `search/target` and `dialogue/state`.
+    `chat/to_user`, `search/target`, `search/facts` (what the person says about a find) and `dialogue/state`.
     """
 
     executable = "dialogue"
@@ -28,6 +28,7 @@ class Dialogue(GraphNode[DialogueParameters]):
         self._poses = PoseHistory()
         self._answers = self.publisher("chat/to_user")
         self._target = self.publisher("search/target")
+        self._facts = self.publisher("search/facts")
         self._state = self.publisher("dialogue/state")
         self.subscribe("chat/from_user", wire.text_from_message, self._on_line)
         self.subscribe("detections/labels", wire.labels_from_message, self._door.hear_names)
@@ -52,6 +53,9 @@ class Dialogue(GraphNode[DialogueParameters]):
         self._state.publish(wire.record_to_message(self._door.state, summary=reaction.answer))
         if reaction.answer:
             self._answers.publish(wire.text_to_message(reaction.answer))
+        if reaction.is_right is not None:
+            word = "confirmed" if reaction.is_right else "refuted"
+            self._facts.publish(wire.text_to_message(f"{word} {reaction.found}"))
         if reaction.target is not None:
             self._target.publish(wire.text_to_message(reaction.target))
 

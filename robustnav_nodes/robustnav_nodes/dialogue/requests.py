@@ -16,6 +16,8 @@ class RequestKind(StrEnum):
     WHERE = "where"
     WHY = "why"
     THANKS = "thanks"
+    RIGHT = "right"
+    WRONG = "wrong"
     GREETING = "greeting"
     HELP = "help"
     UNKNOWN = "unknown"
@@ -34,7 +36,7 @@ class UnreadableLineError(RobustnavError):
 
 
 _FIND = re.compile(
-    r"^(?:(?:please|hey|hi|hello|ok|robot|now|then)[\s,]+)*"
+    r"^(?:(?:please|hey|hi|hello|ok|no|robot|now|then)[\s,]+)*"
     r"(?:(?:can|could|would|will) you (?:please )?|i(?: a|')m looking for |i (?:want|need)(?: you to)? "
     r"|help me )?"
     r"(?:(?:find|search for|look for|locate|seek|fetch|get|bring|where(?: is|'s| are))(?: me)? )?"
@@ -46,7 +48,14 @@ _VERB = re.compile(
 _ARTICLES = re.compile(r"^(?:(?:the|a|an|my|our|your|some|any|that|this|one of the)\s+)+")
 _ENDINGS = re.compile(r"(?:[\s,]*(?:please|for me|now|again|thanks|thank you))*[\s.!?]*$")
 
+_NOT_IT = (
+    r"^(?:(?:no|nope|sorry)[\s,.!]+)*"
+    r"(?:(?:that|this|it)(?:'s| is| was) (?:not|the wrong|wrong)|(?:that|this|it) (?:isn't|wasn't)"
+    r"|not (?:it|that|this)|wrong (?:one|thing|object))\b"
+)
+
 _FIXED = (
+    (RequestKind.WRONG, re.compile(_NOT_IT + r"|^(?:no|nope|wrong)[\s,.!]*$")),
     (
         RequestKind.STOP,
         re.compile(r"^(?:please[\s,]+)?(?:stop|halt|cancel|abort|never ?mind|forget (?:it|about it))\b"),
@@ -54,6 +63,13 @@ _FIXED = (
     (RequestKind.WHERE, re.compile(r"^(?:and )?where(?: are|'re) (?:you|we)\b")),
     (RequestKind.WHY, re.compile(r"^(?:but )?(?:why\b|what are you doing|how come)")),
     (RequestKind.THANKS, re.compile(r"^(?:thanks|thank you|thx|cheers|great|well done|perfect)\b")),
+    (
+        RequestKind.RIGHT,
+        re.compile(
+            r"^(?:(?:yes|yep|yeah)[\s,.!]*$|(?:(?:yes|yep|yeah)[\s,.!]+)?"
+            r"(?:(?:that|this|it)(?:'s| is) (?:it|right|correct|the one|mine)|correct|exactly)\b)"
+        ),
+    ),
     (RequestKind.HELP, re.compile(r"^(?:help|what can you (?:do|find)|what do you know)[\s?!.]*$")),
     (
         RequestKind.GREETING,

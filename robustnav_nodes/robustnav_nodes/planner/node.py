@@ -4,18 +4,20 @@ import sys
 from dataclasses import replace
 from enum import StrEnum
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from robustnav_msgs_py import conversions as wire
+from robustnav_msgs_py.detector_statistics import read_detector_statistics
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.records import SearchPhase, SearchState
 from robustnav_msgs_py.values import BeliefCloud, OccupancyMap, Odometry, Pose2D, StampedPose
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
 from robustnav_nodes.planner.drive import allowed_time_s, has_arrived, stands
-from robustnav_nodes.planner.parameters import PlannerParameters
+from robustnav_nodes.planner.parameters import PlannerParameters, with_recall
 from robustnav_nodes.planner.search_session import NextStep, SearchSession
 from robustnav_nodes.search_space.cache import cached_search_space, user_cache_folder
 from robustnav_nodes.search_space.floor_inputs import FloorInputs
@@ -44,6 +46,8 @@ class Planner(GraphNode[PlannerParameters]):
 
     def configure(self) -> None:
         """Open the topics."""
+        path = self.parameters.detector_statistics_file
+        self._statistics = read_detector_statistics(Path(path)) if path else None
         self._floor = FloorInputs(self.parameters.mask_wait_s)
         self._poses = PoseHistory()
         self._space: SearchSpace | None = None
@@ -125,7 +129,7 @@ class Planner(GraphNode[PlannerParameters]):
         self._session = SearchSession(
             target=self._target,
             space=self._space,
-            parameters=self.parameters,
+            parameters=self._parameters_for(self._target),
             rng=np.random.default_rng([self.parameters.seed, self._episode]),
             episode=self._episode,
             clock=self.steady_s,
@@ -133,6 +137,12 @@ class Planner(GraphNode[PlannerParameters]):
         self._say_state(self._session.state)
         # the belief about this target begins when the belief node hears of it: leave it the time
         self._look(self.now_ns() + int(self.parameters.settle_s * wire.NANOSECONDS))
+
+    def _parameters_for(self, target: str) -> PlannerParameters:
+        """With the recall that the detector has on the target's class, where a file tells it."""
+        if self._statistics is None:
+            return self.parameters
+        return with_recall(self.parameters, self._statistics.of(target).recall)
 
     def _stop(self, message: str) -> None:
         was_searching = self._session is not None and not self._session.ended

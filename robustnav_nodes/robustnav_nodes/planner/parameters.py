@@ -1,7 +1,7 @@
 """What decides a search, on top of the search space that it shares with the belief."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robustnav_msgs_py.parameters import parameter
 from robustnav_nodes.planner.pomcp_parameters import PomcpParameters
@@ -23,6 +23,9 @@ VARIANTS = (
 )
 
 
+LEAST_RECALL = 0.01  # a planner that expects to detect nothing would go nowhere
+
+
 @dataclass(frozen=True, kw_only=True)
 class PlannerParameters(SearchSpaceParameters, PomcpParameters):
     """The planner's variant, its search, when a search ends, and docking."""
@@ -41,7 +44,14 @@ class PlannerParameters(SearchSpaceParameters, PomcpParameters):
         0.8, "pomp_guided: part of the rollouts' steps that go where the belief is", low=0.0, high=1.0
     )
     recall: float = parameter(
-        0.6, "lookahead: how likely a target in view is detected, as far as planning goes", low=0.01, high=1.0
+        0.6,
+        "lookahead: how likely a target in view is detected, as far as planning goes",
+        low=LEAST_RECALL,
+        high=1.0,
+    )
+    detector_statistics_file: str = parameter(
+        "",
+        "lookahead: JSON file that tells recall per class instead, as the belief reads it; empty: as above",
     )
     goals: int = parameter(20, "lookahead: viewpoints tried for one decision", low=1, high=10_000)
     lookahead_steps: int = parameter(60, "lookahead: steps thought ahead", low=1, high=10_000)
@@ -107,3 +117,8 @@ class PlannerParameters(SearchSpaceParameters, PomcpParameters):
         0.5, "of ROS time, between a new target and the first view that counts", unit="s", low=0.0, high=60.0
     )
     check_period_s: float = parameter(0.2, "how often time-outs are looked at", unit="s", low=0.02, high=10.0)
+
+
+def with_recall(parameters: PlannerParameters, recall: float) -> PlannerParameters:
+    """The same with this recall, LEAST_RECALL at least."""
+    return replace(parameters, recall=min(max(recall, LEAST_RECALL), 1.0))

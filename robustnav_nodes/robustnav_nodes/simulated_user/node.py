@@ -11,7 +11,7 @@ from robustnav_nodes.simulated_user.person import Person, choose_target
 
 
 class SimulatedUser(GraphNode[SimulatedUserParameters]):
-    """Asks for an object once somebody listens, waits, thanks.
+    """Asks for an object once somebody listens, waits, thanks, or says that it is not it.
 
     Hears `chat/to_user` and `truth/objects` (what there is to ask for). Says `chat/from_user`.
     """
@@ -34,7 +34,7 @@ class SimulatedUser(GraphNode[SimulatedUserParameters]):
     def _on_objects(self, objects: tuple[ObjectInstance, ...]) -> None:
         target = self.parameters.target or choose_target(objects, self.parameters.seed)
         if target is not None and self._person is None:
-            self._person = Person(target, self.parameters.ask_again_s)
+            self._person = Person(target, self.parameters.ask_again_s, objects)
 
     def _wait(self) -> None:
         if self._person is not None:

@@ -1,5 +1,7 @@
 """The person, without ROS: what they say, given what they hear and how long they have waited."""
 
+import math
+import re
 from collections import Counter
 from collections.abc import Sequence
 from enum import StrEnum
@@ -7,6 +9,9 @@ from enum import StrEnum
 import numpy as np
 
 from robustnav_msgs_py.values import ObjectInstance
+
+NEAR_M = 1.0  # a place that the robot tells is right within this distance of the object
+_PLACE = re.compile(r"x = (-?\d+(?:\.\d+)?) m, y = (-?\d+(?:\.\d+)?) m")
 
 
 class Mood(StrEnum):
@@ -27,13 +32,15 @@ def choose_target(objects: Sequence[ObjectInstance], seed: int) -> str | None:
 
 
 class Person:
-    """Asks for `target`, asks again when nobody answers, thanks in the end.
+    """Asks for `target`, asks again when nobody answers, thanks in the end, or says that it is not it.
 
-    `hear` and `wait` return what the person says, or None. Times are seconds of any one clock.
+    objects: what there really is. `hear` and `wait` return what the person says, or None. Times are seconds
+    of any one clock.
     """
 
-    def __init__(self, target: str, ask_again_s: float) -> None:
+    def __init__(self, target: str, ask_again_s: float, objects: Sequence[ObjectInstance] = ()) -> None:
         self.target = target
+        self._places_m = [(item.x_m, item.y_m) for item in objects if item.label == target]
         self.mood = Mood.WANTS
         self._ask_again_s = ask_again_s
         self._asked_s = 0.0
@@ -54,8 +61,16 @@ class Person:
             return None
         if self.mood is Mood.WAITS_FOR_OBJECT and words.startswith("i found"):
             self.mood = Mood.DONE
-            return "thank you"
+            return "thank you" if self._is_there(line) else "no, that is not it"
         if self.mood is Mood.WAITS_FOR_OBJECT and words.startswith("i did not find"):
             self.mood = Mood.DONE
             return "thanks for trying"
         return None
+
+    def _is_there(self, line: str) -> bool:
+        """Whether the line tells a place of the target; nobody contradicts without knowing."""
+        told = _PLACE.search(line)
+        if told is None or not self._places_m:
+            return True
+        x_m, y_m = (float(number) for number in told.groups())
+        return any(math.hypot(x_m - at[0], y_m - at[1]) <= NEAR_M for at in self._places_m)
