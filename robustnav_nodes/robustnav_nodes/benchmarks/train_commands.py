@@ -13,7 +13,7 @@ train_app = typer.Typer(help="Train our own networks on simulated homes.", no_ar
 
 MAX_SEED = 2**31 - 1
 MINUTES = 36.0
-TEST_HOMES, TEST_PICTURES = 120, 20
+TEST_HOMES, TEST_PICTURES = 100, 12
 
 
 @train_app.command("detector")
@@ -51,7 +51,7 @@ def detector_command(
 
 @train_app.command("judge")
 def judge_command(
-    out: Annotated[Path, typer.Option(help="figures to write, as .json and .png")] = Path(
+    out: Annotated[Path, typer.Option(help="figures to write, as .json, .md and .png")] = Path(
         "runs/detector/figures.json"
     ),
     weights: Annotated[
@@ -61,17 +61,14 @@ def judge_command(
 ) -> None:
     """Judge the detector on homes that it was not trained on."""
     _require_torch()
-    from robustnav_nodes.detection.learned.report_card import judge_weights, save_figures
+    from robustnav_nodes.detection.learned.report_card import judge_weights, save_figures, tables
     from robustnav_nodes.detection.learned.weights import SHIPPED, load_weights
 
-    console = Console(highlight=False, soft_wrap=True)
     out.parent.mkdir(parents=True, exist_ok=True)
     read = load_weights(weights or SHIPPED)
-    figures = judge_weights(read, out.parent / "judging", homes, TEST_PICTURES, console.print)
+    figures = judge_weights(read, out.parent / "judging", homes, TEST_PICTURES)
     save_figures(out, figures)
-    for name in ("mean_ap", "precision", "recall", "ms_per_image_on_one_core", "look_alikes"):
-        console.print(f"{name}: {figures[name]}")
-    console.print(str(out))
+    Console(highlight=False, soft_wrap=True).print(tables(figures), markup=False)
 
 
 def _require_torch() -> None:

@@ -75,7 +75,7 @@ class RenderPlan:
 def render_pictures(
     plan: RenderPlan, folder: Path, workers: int, advanced: Callable[[], None] = lambda: None
 ) -> PictureSet:
-    """Render into `folder` with some processes; `advanced` is called after each home.
+    """Render into `folder` with `workers` processes (1: in this one); `advanced` is called after each home.
 
     A folder that is complete is only read.
     """
@@ -85,10 +85,10 @@ def render_pictures(
         folder.mkdir(parents=True, exist_ok=True)
         shape = (plan.homes * plan.per_home, HEIGHT, WIDTH, 3)
         np.lib.format.open_memmap(folder / PIXELS_FILE, mode="w+", dtype=np.uint8, shape=shape).flush()
+        jobs = [(plan, folder / PIXELS_FILE, home) for home in range(plan.homes)]
         tables = []
         with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            jobs = ((plan, folder / PIXELS_FILE, home) for home in range(plan.homes))
-            for table in pool.map(_render_home, jobs):
+            for table in pool.map(_render_home, jobs) if workers > 1 else map(_render_home, jobs):
                 tables.append(table)
                 advanced()
         save_objects(folder, ObjectTable.joined(tables), LABELS)
