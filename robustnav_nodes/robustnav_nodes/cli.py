@@ -15,6 +15,7 @@ from rich.table import Table
 from robustnav_msgs_py.errors import BadParameterError, RobustnavError
 from robustnav_nodes.benchmarks.bench_commands import bench_app
 from robustnav_nodes.benchmarks.data_commands import data_app
+from robustnav_nodes.benchmarks.train_commands import train_app
 
 app = typer.Typer(
     help="Ask a robot to find an object; it works although the detector lies.",
@@ -24,6 +25,7 @@ app = typer.Typer(
 )
 app.add_typer(bench_app, name="bench")
 app.add_typer(data_app, name="data")
+app.add_typer(train_app, name="train")
 
 DEMO_SPEED = 4.0
 DEMO_LIMIT_S = 110.0  # at that speed; slower ones take longer

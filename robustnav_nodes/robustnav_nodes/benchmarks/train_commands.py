@@ -1,0 +1,80 @@
+"""`robustnav train`: teach our own networks, and judge what they learned."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from robustnav_msgs_py.errors import BadParameterError
+
+train_app = typer.Typer(help="Train our own networks on simulated homes.", no_args_is_help=True)
+
+MAX_SEED = 2**31 - 1
+MINUTES = 36.0
+TEST_HOMES, TEST_PICTURES = 100, 12
+
+
+@train_app.command("detector")
+def detector_command(
+    out: Annotated[Path, typer.Option(help="weights file to write (.npz)")] = Path(
+        "runs/detector/weights.npz"
+    ),
+    minutes: Annotated[float, typer.Option(min=0.1, max=1000.0, help="in all, with rendering")] = MINUTES,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="decides all that is random")] = 1,
+    homes: Annotated[int, typer.Option(min=1, max=90_000, help="how many homes to learn from")] = 800,
+    resume: Annotated[bool, typer.Option("--resume", help="take up a training that was stopped")] = False,
+) -> None:
+    """Train the detector from nothing, on pictures rendered for it (7 MB a home beside the weights)."""
+    _require_torch()
+    from robustnav_nodes.detection.learned.training import TrainingPlan, train_detector
+
+    out.parent.mkdir(parents=True, exist_ok=True)
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[word]}"), TimeElapsedColumn()
+    )
+    with bar:
+        tasks = {
+            name: bar.add_task(name, total=1.0, word="", start=False)
+            for name in ("pictures", "detector", "look")
+        }
+
+        def report(name: str, share: float, word: str) -> None:
+            bar.start_task(tasks[name])
+            bar.update(tasks[name], completed=share, word=word)
+
+        plan = TrainingPlan(minutes=minutes, seed=seed, homes=homes)
+        train_detector(out, plan, resume=resume, report=report)
+    Console(highlight=False).print(f"{out}: judge it with `robustnav train judge --weights {out}`")
+
+
+@train_app.command("judge")
+def judge_command(
+    out: Annotated[Path, typer.Option(help="figures to write, as .json, .md and .png")] = Path(
+        "runs/detector/figures.json"
+    ),
+    weights: Annotated[
+        Path | None, typer.Option(help="weights file (.npz); default: those that come along")
+    ] = None,
+    homes: Annotated[int, typer.Option(min=1, max=10_000, help="how many homes to judge on")] = TEST_HOMES,
+) -> None:
+    """Judge the detector on homes that it was not trained on."""
+    _require_torch()
+    from robustnav_nodes.detection.learned.report_card import judge_weights, save_figures, tables
+    from robustnav_nodes.detection.learned.weights import SHIPPED, load_weights
+
+    out.parent.mkdir(parents=True, exist_ok=True)
+    read = load_weights(weights or SHIPPED)
+    figures = judge_weights(read, out.parent / "judging", homes, TEST_PICTURES)
+    save_figures(out, figures)
+    Console(highlight=False, soft_wrap=True).print(tables(figures), markup=False)
+
+
+def _require_torch() -> None:
+    try:
+        import torch  # noqa: F401
+    except ImportError as error:
+        raise BadParameterError(
+            "training needs torch, which is not installed; install it with pip install 'robustnav[learn]'"
+        ) from error

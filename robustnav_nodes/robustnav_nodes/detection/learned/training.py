@@ -1,0 +1,125 @@
+"""Trains the detector from nothing: renders the pictures, trains both networks, writes the weights."""
+
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import torch
+
+from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.detection.learned.lessons import DetectionLoss, LookLoss
+from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwork, Widths
+from robustnav_nodes.detection.learned.phase import Clock, CurvePoint, Phase
+from robustnav_nodes.detection.learned.rendering import Kind, RenderPlan, render_pictures
+from robustnav_nodes.detection.learned.weights import Weights, save_weights
+
+# The seeds below this one are for demos and tests; those from TEST_SEED on are never trained on.
+FIRST_SEED, TEST_SEED = 1000, 500_000
+HOMES, PICTURES_PER_HOME = 800, 30
+# Processes, each on one core.
+WORKERS = 2
+LOOK_SHARE = 0.15
+# However slow the rendering was, something is learned.
+LEARNING_MIN_S = 60.0
+
+# What is being done, how much of it is over (0..1), and a word on it.
+Report = Callable[[str, float, str], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrainingPlan:
+    """What to train and how long: `minutes` in all, rendering included; `seed` decides all that is random."""
+
+    minutes: float
+    seed: int
+    homes: int = HOMES
+    per_home: int = PICTURES_PER_HOME
+
+
+def train_detector(
+    out: Path, plan: TrainingPlan, *, resume: bool, report: Report, clock: Clock = time.monotonic
+) -> Weights:
+    """Train, and write the weights to `out`; pictures and checkpoints stay in `training` beside it.
+
+    Pictures are rendered once; `resume` takes up checkpoints. Raises BadParameterError where there are some
+    and `resume` was not asked for.
+    """
+    work = out.parent / "training"
+    checkpoints = [work / f"{name}.checkpoint" for name in ("detector", "look")]
+    if not resume and any(path.exists() for path in checkpoints):
+        raise BadParameterError(
+            f"{str(work)!r} holds an earlier training; take it up with --resume, or remove it"
+        )
+    folder = work / "pictures"
+    torch.manual_seed(plan.seed)
+    began_s = clock()
+    homes = 0
+
+    def rendered() -> None:
+        nonlocal homes
+        homes += 1
+        report("pictures", homes / plan.homes, f"{homes} homes")
+
+    pictures = render_pictures(
+        RenderPlan(kind=Kind.TRAINING, first_seed=FIRST_SEED, homes=plan.homes, per_home=plan.per_home),
+        folder,
+        WORKERS,
+        rendered,
+    )
+    left_s = max(LEARNING_MIN_S, plan.minutes * 60.0 - (clock() - began_s))
+    widths = Widths()
+    detector = DetectorNetwork(len(pictures.labels), widths).to(memory_format=torch.channels_last)
+    look = LookNetwork().to(memory_format=torch.channels_last)
+    phases = {
+        "detector": Phase(
+            detector,
+            DetectionLoss(pictures=folder, seed=plan.seed),
+            workers=WORKERS,
+            seed=plan.seed,
+            budget_s=left_s * (1.0 - LOOK_SHARE),
+            checkpoint=checkpoints[0],
+            clock=clock,
+        ),
+        "look": Phase(
+            look,
+            LookLoss(pictures=folder),
+            workers=WORKERS,
+            seed=plan.seed,
+            budget_s=left_s * LOOK_SHARE,
+            checkpoint=checkpoints[1],
+            clock=clock,
+        ),
+    }
+    for name, phase in phases.items():
+        phase.run(lambda now, name=name: report(name, now.share, _standing(now)))  # type: ignore[misc]
+    weights = Weights(
+        labels=pictures.labels,
+        widths=widths,
+        detector=phases["detector"].average,
+        look=phases["look"].average,
+    )
+    save_weights(out, weights)
+    save_curves(out.with_suffix(".curves"), {name: phase.curve for name, phase in phases.items()})
+    return weights
+
+
+def save_curves(path: Path, curves: dict[str, list[CurvePoint]]) -> None:
+    """Losses over time: as PATH.json, and drawn as PATH.png."""
+    from matplotlib.figure import Figure
+
+    text = json.dumps({name: [asdict(point) for point in curve] for name, curve in curves.items()})
+    path.with_suffix(".json").write_text(text, encoding="utf-8")
+    figure = Figure(figsize=(9.0, 3.5), layout="constrained")
+    for axes, (name, curve) in zip(
+        figure.subplots(1, len(curves), squeeze=False)[0], curves.items(), strict=True
+    ):
+        axes.plot([point.seconds / 60.0 for point in curve], [point.loss for point in curve])
+        axes.set(title=name, xlabel="minutes", ylabel="loss", yscale="log")
+    figure.savefig(path.with_suffix(".png"), dpi=120)
+
+
+def _standing(phase: Phase) -> str:
+    loss = f", loss {phase.curve[-1].loss:.2f}" if phase.curve else ""
+    return f"{phase.steps} steps{loss}"
