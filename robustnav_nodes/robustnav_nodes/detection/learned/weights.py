@@ -16,7 +16,7 @@ from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwo
 
 FORMAT = "robustnav detector 1"
 SHIPPED = Path(__file__).with_name("weights.npz")
-REMEDY = "train them anew with `robustnav train detector`, or leave `weights` empty for those that come along"
+REMEDY = "train them anew with `robustnav train detector`, or leave `model` empty for those that come along"
 _FACTS, _DETECTOR, _LOOK = "facts", "detector.", "look."
 
 
