@@ -11,7 +11,7 @@ from robustnav_nodes.instruction.episodes import ERROR_TYPES, Instruction
 from robustnav_nodes.instruction.injection import Injector, error_episodes, error_statistics
 from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.tokens import tokenized
-from robustnav_nodes.instruction.wording import Wording
+from robustnav_nodes.instruction.wording import learn_wording
 
 
 @pytest.mark.parametrize("error_type", ERROR_TYPES)
@@ -49,7 +49,7 @@ def test_matched_takes_the_likely_word(instruction: Instruction) -> None:
     """Of two replacements, one that people write there and one that nobody does, the first is taken."""
     usual = [tokenized(f"stop in the {room} next to the refrigerator") for room in ("kitchen", "patio")] * 50
     common_sense = CommonSense(rooms={"kitchen": ("garage", "patio")}, objects={})
-    injector = Injector(common_sense=common_sense, wording=Wording(usual))
+    injector = Injector(common_sense=common_sense, wording=learn_wording(usual))
     some = [replace(instruction, key=str(k)) for k in range(100)]
     taken = [e.wrong[0].wrong for e in error_episodes(some, "room", injector, 1) if e.wrong]
     assert taken.count("patio") > 20 * max(1, taken.count("garage"))

@@ -185,3 +185,14 @@ def put_in_form(kind: str, concept: str, *, plural: bool) -> str:
     if kind == OBJECT:
         return OBJECTS[concept][1 if plural else 0]
     return ROOMS[concept][-1] if plural else concept
+
+
+# Every concept has a number: directions first, then objects, then rooms.
+CONCEPTS: tuple[tuple[str, str], ...] = (
+    *((DIRECTION, concept) for concept in OPPOSITES),
+    *((OBJECT, concept) for concept in OBJECTS),
+    *((ROOM, concept) for concept in ROOMS),
+)
+CONCEPT_NUMBER: Mapping[tuple[str, str], int] = MappingProxyType({key: k for k, key in enumerate(CONCEPTS)})
+FIRST_OBJECT = len(OPPOSITES)
+FIRST_ROOM = len(OPPOSITES) + len(OBJECTS)

@@ -78,9 +78,7 @@ class Injector:
             concept = others[int(rng.integers(len(others)))]
             if self.wording is None:
                 return mention, concept
-            gain = self.wording.log_fit(tokens, mention, concept) - self.wording.log_fit(
-                tokens, mention, mention.concept
-            )
+            gain = self.wording.gain(tokens, mention, concept)
             if math.log(rng.uniform(1e-300, 1.0)) < gain:
                 return mention, concept
         return None

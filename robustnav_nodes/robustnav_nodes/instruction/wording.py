@@ -1,41 +1,71 @@
 """How well a word fits between its neighbours, by how people write: all that can be told without looking."""
 
-import math
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
+import numpy as np
+
+from robustnav_msgs_py.values import Float64
+from robustnav_nodes.instruction.concepts import CONCEPT_NUMBER, CONCEPTS
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
 
-_OFFSETS = (-2, -1, 1, 2)
+_OFFSETS = (-3, -2, -1, 1, 2, 3)
 _EDGE = "|"  # beside the first and the last token
+_RARE = "?rare"
 _PRIOR = 4.0  # observations that a neighbour's overall share counts for
+_AT_LEAST = 4  # a word that is written less often is taken for any rare word
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Wording:
-    """Neighbours of each concept in clean instructions; read only once made."""
+    """Naive Bayes of a concept's neighbours.
 
-    def __init__(self, instructions: Iterable[Sequence[str]]) -> None:
-        self._count: Counter[str] = Counter()
-        self._beside: defaultdict[tuple[str, int], Counter[str]] = defaultdict(Counter)
-        self._anywhere: Counter[str] = Counter()
-        for tokens in instructions:
-            self._anywhere.update(tokens)
-            for mention in find_mentions(tokens):
-                self._count[mention.concept] += 1
-                for offset in _OFFSETS:
-                    self._beside[mention.concept, offset][_neighbour(tokens, mention, offset)] += 1
-        self._tokens = sum(self._anywhere.values()) + 1
+    `words` are those known; `base` [concepts] the logarithm of how often each concept is written; `beside`
+    [words, offsets, concepts] that of a neighbour given the concept.
+    """
 
-    def log_fit(self, tokens: Sequence[str], mention: Mention, concept: str) -> float:
-        """Logarithm, up to a constant, of how often `concept` is written where `mention` stands."""
-        count = self._count[concept]
-        fit = math.log(count + 0.1)
-        for offset in _OFFSETS:
+    words: dict[str, int]
+    base: Float64
+    beside: Float64
+
+    def log_fits(self, tokens: Sequence[str], mention: Mention) -> Float64:
+        """Logarithm, up to a constant, of how often each of CONCEPTS is written where `mention` stands."""
+        fits = self.base.copy()
+        for k, offset in enumerate(_OFFSETS):
             word = _neighbour(tokens, mention, offset)
-            share = (self._anywhere[word] + 1) / self._tokens
-            beside = self._beside.get((concept, offset))
-            fit += math.log(((beside[word] if beside else 0) + _PRIOR * share) / (count + _PRIOR))
-        return fit
+            fits += self.beside[self.words.get(word, 0), k]
+        return fits
+
+    def gain(self, tokens: Sequence[str], mention: Mention, concept: str) -> float:
+        """How much better another concept of the same kind fits: log(fit(new) / fit(old))."""
+        fits = self.log_fits(tokens, mention)
+        kind = mention.kind
+        return float(fits[CONCEPT_NUMBER[kind, concept]] - fits[CONCEPT_NUMBER[kind, mention.concept]])
+
+
+def learn_wording(instructions: Iterable[Sequence[str]]) -> Wording:
+    """Count the neighbours of each concept in clean instructions."""
+    read = [tuple(tokens) for tokens in instructions]
+    often = Counter(token for tokens in read for token in tokens)
+    words = {_RARE: 0, _EDGE: 1}
+    for word, count in sorted(often.items()):
+        if count >= _AT_LEAST:
+            words[word] = len(words)
+    anywhere = np.full(len(words), 1.0)
+    for word, count in often.items():
+        anywhere[words.get(word, 0)] += count
+    share = anywhere / anywhere.sum()
+    count = np.zeros(len(CONCEPTS))
+    beside = np.zeros((len(words), len(_OFFSETS), len(CONCEPTS)))
+    for tokens in read:
+        for mention in find_mentions(tokens):
+            number = CONCEPT_NUMBER[mention.kind, mention.concept]
+            count[number] += 1.0
+            for k, offset in enumerate(_OFFSETS):
+                beside[words.get(_neighbour(tokens, mention, offset), 0), k, number] += 1.0
+    log_beside = np.log((beside + _PRIOR * share[:, None, None]) / (count + _PRIOR))
+    return Wording(words=words, base=np.log(count + 0.1), beside=log_beside.astype(np.float32).astype(float))
 
 
 def _neighbour(tokens: Sequence[str], mention: Mention, offset: int) -> str:
