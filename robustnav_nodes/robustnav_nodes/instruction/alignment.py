@@ -84,4 +84,4 @@ def _reach(
 @njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
 def _shares(logs: Float64) -> Float64:
     weights = np.exp(logs - logs.max())
-    return weights / weights.sum()
+    return np.asarray(weights / weights.sum())

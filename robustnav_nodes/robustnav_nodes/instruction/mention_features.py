@@ -289,7 +289,7 @@ def _wording_columns(
     for name, values in (("fit_before", np.roll(odds[0], 1)), ("fit_after", np.roll(odds[0], -1))):
         columns.add(name, values)
     columns.add("fit_worst_other", _worst_other(odds[0]))
-    return odds[0]
+    return np.asarray(odds[0])
 
 
 def _replacement_odds(

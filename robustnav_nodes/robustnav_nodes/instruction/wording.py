@@ -49,12 +49,12 @@ def learn_wording(instructions: Iterable[Sequence[str]]) -> Wording:
     read = [tuple(tokens) for tokens in instructions]
     often = Counter(token for tokens in read for token in tokens)
     words = {_RARE: 0, _EDGE: 1}
-    for word, count in sorted(often.items()):
-        if count >= _AT_LEAST:
+    for word, times in sorted(often.items()):
+        if times >= _AT_LEAST:
             words[word] = len(words)
     anywhere = np.full(len(words), 1.0)
-    for word, count in often.items():
-        anywhere[words.get(word, 0)] += count
+    for word, times in often.items():
+        anywhere[words.get(word, 0)] += times
     share = anywhere / anywhere.sum()
     count = np.zeros(len(CONCEPTS))
     beside = np.zeros((len(words), len(_OFFSETS), len(CONCEPTS)))
