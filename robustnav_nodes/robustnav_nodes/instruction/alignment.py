@@ -84,4 +84,5 @@ def _reach(
 @njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
 def _shares(logs: Float64) -> Float64:
     weights = np.exp(logs - logs.max())
-    return np.asarray(weights / weights.sum())
+    shares: Float64 = weights / weights.sum()
+    return shares

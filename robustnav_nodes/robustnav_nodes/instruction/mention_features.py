@@ -132,6 +132,9 @@ _AFTER = (
     ),
 )
 _SIDED = frozenset({"left", "right", "leftmost", "rightmost"})
+_OPPOSITE = {
+    CONCEPT_NUMBER[DIRECTION, one]: CONCEPT_NUMBER[DIRECTION, other] for one, other in OPPOSITES.items()
+}
 _SIGN = {"left": 1.0, "leftmost": 1.0, "right": -1.0, "rightmost": -1.0}
 _TURNED_RAD = 0.6  # what counts as a turn that people mention
 _LINK_AFTER, _LINK_BEFORE = 5, 4  # tokens to the thing that a direction is said of
@@ -224,9 +227,7 @@ def _wording_columns(
     columns.add("concept", numbers.astype(float))
     columns.add("fit", own)
     columns.add("share", own - np.logaddexp.reduce(fits, axis=1) if count else own)
-    odds = np.zeros((4, count))
-    for m, number in enumerate(numbers):
-        odds[:, m] = _replacement_odds(fits[m], int(number), replacements, None)
+    odds = _replacement_odds(fits, numbers, replacements, None)
     for name, values in zip(("uniform", "matched", "best", "allowed"), odds, strict=True):
         columns.add(f"blind_{name}", values)
     words = [
@@ -288,35 +289,45 @@ def _wording_columns(
     )
     for name, values in (("fit_before", np.roll(odds[0], 1)), ("fit_after", np.roll(odds[0], -1))):
         columns.add(name, values)
-    columns.add("fit_worst_other", _worst_other(odds[0]))
-    return np.asarray(odds[0])
+    uniform: Float64 = odds[0]
+    columns.add("fit_worst_other", _worst_other(uniform))
+    return uniform
 
 
 def _replacement_odds(
-    fits: Float64, number: int, replacements: Replacements, evidence: Float64 | None
-) -> tuple[float, float, float, float]:
-    """Log odds that `number` was put in: uniform, matched, of the best one; and of how many."""
-    if number < FIRST_OBJECT:
-        other = CONCEPT_NUMBER[DIRECTION, OPPOSITES[CONCEPTS[number][1]]]
-        gain = float(fits[other] - fits[number])
-        seen = 0.0 if evidence is None else float(evidence[0])
-        return gain + seen, min(gain, 0.0) + seen, gain + seen, 1.0
-    column = number - FIRST_OBJECT
-    could = np.flatnonzero(np.isfinite(replacements.log_share[:, column]))
-    if not len(could):
-        return math.nan, math.nan, math.nan, 0.0
-    own = fits[number]
-    gain = fits[could + FIRST_OBJECT] - own
-    weight = replacements.log_share[could, column]
-    seen_gain = np.zeros(len(could)) if evidence is None else evidence[could] - evidence[column]
-    total = gain + weight + seen_gain
-    matched = np.minimum(gain, 0.0) + weight + seen_gain
-    return _log_sum(total), _log_sum(matched), float((gain + seen_gain).max()), float(len(could))
+    fits: Float64, numbers: NDArray[np.int64], replacements: Replacements, evidence: Float64 | None
+) -> Float64:
+    """float64 [4, M]: log odds that each was put in (uniform, matched, of the best one); of how many.
 
-
-def _log_sum(logs: Float64) -> float:
-    top = float(logs.max())
-    return top + math.log(float(np.exp(logs - top).sum()))
+    `fits` [M, concepts]; `evidence` [M, objects and rooms], none for the wording alone. NaN where nothing is
+    known to be replaced by the concept.
+    """
+    count = len(numbers)
+    found = np.full((4, count), np.nan)
+    if not count:
+        return found
+    sided = numbers < FIRST_OBJECT
+    if sided.any():
+        other = np.array([_OPPOSITE[number] for number in numbers[sided]])
+        gain = fits[sided, other] - fits[sided, numbers[sided]]
+        found[:, sided] = gain, np.minimum(gain, 0.0), gain, np.ones(len(gain))
+    thing = ~sided
+    if thing.any():
+        column = numbers[thing] - FIRST_OBJECT
+        gain = fits[thing, FIRST_OBJECT:] - fits[thing, numbers[thing]][:, None]
+        weight = replacements.log_share.T[column]
+        seen = np.zeros_like(gain)
+        if evidence is not None:
+            seen = evidence[thing] - evidence[thing, column][:, None]
+        could = np.isfinite(weight)
+        known = could.any(axis=1)
+        rows = np.flatnonzero(thing)[known]
+        gain, weight, seen, could = gain[known], weight[known], seen[known], could[known]
+        found[0, rows] = np.logaddexp.reduce(gain + weight + seen, axis=1)
+        found[1, rows] = np.logaddexp.reduce(np.minimum(gain, 0.0) + weight + seen, axis=1)
+        found[2, rows] = np.where(could, gain + seen, -np.inf).max(axis=1)
+        found[3, rows] = could.sum(axis=1)
+    return found
 
 
 @cache
@@ -378,12 +389,10 @@ def _evidence_columns(
     }
     answer = np.full(count, np.nan)
     for name, view in views.items():
-        odds = np.full((4, count), np.nan)
-        bare = np.full(count, np.nan)
-        for m, number in enumerate(numbers):
-            if number >= FIRST_OBJECT:
-                odds[:, m] = _replacement_odds(fits[m], int(number), replacements, view[m])
-                bare[m] = _replacement_odds(np.zeros(len(CONCEPTS)), int(number), replacements, view[m])[0]
+        odds = _replacement_odds(fits, numbers, replacements, view)
+        bare = _replacement_odds(np.zeros_like(fits), numbers, replacements, view)[0]
+        odds[:, numbers < FIRST_OBJECT] = np.nan
+        bare[numbers < FIRST_OBJECT] = np.nan
         for k, which in enumerate(("uniform", "matched", "best")):
             columns.add(f"odds_{name}_{which}", odds[k])
         columns.add(f"odds_{name}_bare", bare)
@@ -398,7 +407,7 @@ def _evidence_columns(
             )
             opposite = places.of_mentions(scene, tokens, [other], at_places)[0]
             flipped[m] = math.log(float(elsewhere[m] @ np.exp(opposite)) + 1e-9) - here[m]
-            answer[m] = _replacement_odds(fits[m], int(number), replacements, np.array([flipped[m]]))[0]
+            answer[m] = fits[m, CONCEPT_NUMBER[DIRECTION, other.concept]] - fits[m, number] + flipped[m]
     columns.add("opposite", flipped)
     columns.add("opposite_odds", np.where(np.isnan(flipped), np.nan, answer))
     return answer

@@ -46,7 +46,8 @@ class PlaceModel:
         logits = units @ self.out[:-1] + self.out[-1]
         logits -= logits.max(axis=1, keepdims=True)
         logs = logits - np.log(np.exp(logits).sum(axis=1, keepdims=True)) - self.log_share
-        return np.asarray(np.clip(logs, -_LIMIT, _LIMIT))
+        kept: Float64 = np.clip(logs, -_LIMIT, _LIMIT)
+        return kept
 
     def of_mentions(
         self, scene: Scene, tokens: Sequence[str], mentions: Sequence[Mention], at_places: Float64
@@ -176,7 +177,8 @@ def _log_ratio(counts: Float64, everywhere: np.ndarray[tuple[int], np.dtype[np.i
     """log P(bin | said) / P(bin), the latter as often to the left as to the right."""
     both = everywhere + everywhere[::-1] + 2.0
     ratio = (counts / counts.sum(axis=-1, keepdims=True)) / (both / both.sum())
-    return np.asarray(np.clip(np.log(ratio), -_LIMIT, _LIMIT))
+    kept: Float64 = np.clip(np.log(ratio), -_LIMIT, _LIMIT)
+    return kept
 
 
 def _fit_network(x: Float64, counts: Float64, seed: int, epochs: int) -> tuple[Float64, Float64]:

@@ -1,0 +1,308 @@
+"""How our model is learned from clean instructions, the walks they were written for, and nothing else.
+
+Errors are put in anew for training (`injection`). The place model and the wording that describe a home are
+always learned without it, in folds over homes: trees that saw their rows on homes known by heart would trust
+them too much.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robustnav_msgs_py.errors import BadParameterError
+from robustnav_msgs_py.values import Float64
+from robustnav_nodes.instruction.common_sense import CommonSense
+from robustnav_nodes.instruction.concepts import KINDS
+from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
+from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.mention_features import mention_rows, replacements_of
+from robustnav_nodes.instruction.mention_model import SUMMARY, Knowledge, Scorer, episode_summary
+from robustnav_nodes.instruction.mentions import Mention, find_mentions
+from robustnav_nodes.instruction.model_file import LearnedModel
+from robustnav_nodes.instruction.place_model import SaidOnWalk, learn_places
+from robustnav_nodes.instruction.scene import Scene, scene_of
+from robustnav_nodes.instruction.trees import Trees, trees_of
+from robustnav_nodes.instruction.wording import learn_wording
+
+Say = Callable[[str], None]
+_HOMES_TO_CALIBRATE = 12  # one in so many
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TreeSettings:
+    """How the trees grow; chosen on homes that were left out of training."""
+
+    iterations: int = 300
+    learning_rate: float = 0.07
+    leaves: int = 31
+    least_in_leaf: int = 60
+    features_at_a_split: float = 0.3
+    clean_share: float = 0.5  # of the mentions that are right, so many are learned from
+    ensembles: int = 2
+    folds: int = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LearnedRows:
+    """Rows of many episodes: `episode` is the number of each row's episode, `wrong` 1 where it was put in."""
+
+    values: NDArray[np.float32]
+    episode: NDArray[np.int64]
+    kind: NDArray[np.int64]  # an index into KINDS
+    wrong: NDArray[np.int64]
+    label: NDArray[np.int64]  # by episode
+    names: tuple[str, ...]  # of the columns of `values`
+    blind: int
+
+
+def learn_knowledge(
+    instructions: Sequence[Instruction], scenes: dict[int, Scene], common_sense: CommonSense, seed: int
+) -> Knowledge:
+    """What clean instructions teach: the wording, and what is mentioned at which places."""
+    numbers: dict[int, int] = {}
+    said = [
+        SaidOnWalk(
+            walk=numbers.setdefault(id(one.trajectory), len(numbers)),
+            tokens=one.tokens,
+            mentions=find_mentions(one.tokens),
+        )
+        for one in instructions
+    ]
+    return Knowledge(
+        places=learn_places([scenes[key] for key in numbers], said, seed=seed),
+        wording=learn_wording(one.tokens for one in instructions),
+        replacements=replacements_of(common_sense),
+    )
+
+
+def fold_of_groups(groups: Sequence[str], folds: int, seed: int) -> dict[str, int]:
+    """A fold for each home, by chance; fold 0 is for calibration, and small.
+
+    Raises BadParameterError for fewer than two homes.
+    """
+    names = sorted(set(groups))
+    if len(names) < 2:
+        raise BadParameterError(
+            f"there is only {len(names)} home to learn from; at least two are needed, so that what is "
+            "learned in one can be tried in another"
+        )
+    order = np.random.default_rng(seed).permutation(len(names))
+    calibrating = max(1, len(names) // _HOMES_TO_CALIBRATE)
+    return {
+        names[k]: 0 if place < calibrating else 1 + place % min(folds, len(names) - calibrating)
+        for place, k in enumerate(order)
+    }
+
+
+def training_episodes(
+    instructions: Sequence[Instruction], injector: Injector, seed: int
+) -> Iterator[ErrorEpisode]:
+    """Every instruction once clean for each type of error, and once with it."""
+    for number, error_type in enumerate(ERROR_TYPES):
+        yield from error_episodes(instructions, error_type, injector, seed + number)
+
+
+def rows_of(
+    episodes: Sequence[ErrorEpisode],
+    scenes: dict[int, Scene],
+    knowledge_of: Callable[[str], Knowledge],
+    say: Say,
+) -> LearnedRows:
+    """Describe every mention of every episode, each by the knowledge for its home."""
+    values, episode, kind, wrong = [], [], [], []
+    known: dict[tuple[int, int], Float64] = {}
+    names: tuple[str, ...] = ()
+    blind = 0
+    for number, one in enumerate(episodes):
+        knowledge = knowledge_of(one.group)
+        scene = scenes[id(one.trajectory)]
+        key = (id(one.trajectory), id(knowledge))
+        if key not in known:
+            known[key] = knowledge.places.evidence(scene)
+        mentions = find_mentions(one.tokens)
+        rows = mention_rows(
+            scene,
+            known[key],
+            one.tokens,
+            mentions,
+            places=knowledge.places,
+            wording=knowledge.wording,
+            replacements=knowledge.replacements,
+        )
+        names, blind = rows.names, rows.blind
+        values.append(rows.values)
+        episode += [number] * len(mentions)
+        kind += [KINDS.index(m.kind) for m in mentions]
+        wrong += [int(is_wrong(m, one)) for m in mentions]
+        if number and number % 20_000 == 0:
+            say(f"described {number} of {len(episodes)} episodes")
+    return LearnedRows(
+        values=np.concatenate(values),
+        episode=np.array(episode, dtype=np.int64),
+        kind=np.array(kind, dtype=np.int64),
+        wrong=np.array(wrong, dtype=np.int64),
+        label=np.array([one.label for one in episodes], dtype=np.int64),
+        names=names,
+        blind=blind,
+    )
+
+
+def is_wrong(mention: Mention, episode: ErrorEpisode) -> bool:
+    """Whether a wrong span of its kind overlaps the mention."""
+    return any(
+        span.kind == mention.kind
+        and span.start < mention.start + mention.length
+        and mention.start < span.start + span.length
+        for span in episode.wrong
+    )
+
+
+def learn_trees(
+    rows: LearnedRows, kind: str, settings: TreeSettings, *, blind: bool, seed: int
+) -> tuple[Trees, ...]:
+    """Ensembles for one kind of mention, each from other clean rows and other chances."""
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    found = []
+    for number in range(settings.ensembles):
+        rng = np.random.default_rng([seed, number])
+        kept = (rows.kind == KINDS.index(kind)) & (
+            (rows.wrong == 1) | (rng.uniform(size=len(rows.wrong)) < settings.clean_share)
+        )
+        x = rows.values[kept][:, : rows.blind] if blind else rows.values[kept]
+        x[:, np.isnan(x).all(axis=0)] = 0.0  # scikit-learn cannot bin a column without a value
+        classifier = HistGradientBoostingClassifier(
+            max_iter=settings.iterations,
+            learning_rate=settings.learning_rate,
+            max_leaf_nodes=settings.leaves,
+            min_samples_leaf=settings.least_in_leaf,
+            l2_regularization=1.0,
+            max_features=settings.features_at_a_split,
+            early_stopping=False,
+            random_state=seed + number,
+        )
+        found.append(trees_of(classifier.fit(x, rows.wrong[kept])))
+    return tuple(found)
+
+
+def learn_head(odds: Float64, rows: LearnedRows) -> Float64:
+    """Logistic regression of the label on the episodes' summaries; `odds` of trees that did not see them."""
+    from sklearn.linear_model import LogisticRegression
+
+    starts = np.searchsorted(rows.episode, np.arange(len(rows.label) + 1))
+    summary = np.zeros((len(rows.label), SUMMARY))
+    names = np.array(KINDS)
+    for number in range(len(rows.label)):
+        part = slice(starts[number], starts[number + 1])
+        summary[number] = episode_summary(odds[part], list(names[rows.kind[part]]))
+    regression = LogisticRegression(C=1.0, fit_intercept=False, max_iter=500)
+    head: Float64 = regression.fit(summary, rows.label).coef_[0]
+    return head
+
+
+def odds_of(scorer_trees: dict[str, tuple[Trees, ...]], rows: LearnedRows, *, blind: bool) -> Float64:
+    """Log odds of all rows."""
+    scorer = Scorer(trees=scorer_trees, head=np.zeros(SUMMARY), blind=blind)
+    return scorer.mention_odds(rows.values, [KINDS[k] for k in rows.kind], rows.blind)
+
+
+def learn_scorer(
+    rows: LearnedRows,
+    calibrating: NDArray[np.bool_],
+    settings: TreeSettings,
+    *,
+    blind: bool,
+    seed: int,
+    say: Say,
+) -> Scorer:
+    """Trees, and the head that makes a probability of them, from homes that the trees did not see.
+
+    `calibrating` bool [episodes] marks the latter.
+    """
+    seen, unseen = part_of(rows, ~calibrating), part_of(rows, calibrating)
+    trees = {}
+    for kind in KINDS:
+        trees[kind] = learn_trees(seen, kind, settings, blind=blind, seed=seed)
+        say(f"{'blind trees' if blind else 'trees'} for {kind} words are learned")
+    head = learn_head(odds_of(trees, unseen, blind=blind), unseen)
+    return Scorer(trees=trees, head=head, blind=blind)
+
+
+def part_of(rows: LearnedRows, episodes: NDArray[np.bool_]) -> LearnedRows:
+    """The rows of some episodes, numbered anew."""
+    kept = episodes[rows.episode]
+    number = np.cumsum(episodes) - 1
+    return LearnedRows(
+        values=rows.values[kept],
+        episode=number[rows.episode[kept]],
+        kind=rows.kind[kept],
+        wrong=rows.wrong[kept],
+        label=rows.label[episodes],
+        names=rows.names,
+        blind=rows.blind,
+    )
+
+
+def injector_of(
+    protocol: Protocol, instructions: Sequence[Instruction], common_sense: CommonSense
+) -> Injector:
+    """The injector of a protocol; `matched` knows the wording of all instructions."""
+    wording = learn_wording(one.tokens for one in instructions) if protocol == "matched" else None
+    return Injector(common_sense=common_sense, wording=wording)
+
+
+def scenes_of(instructions: Sequence[Instruction]) -> dict[int, Scene]:
+    """By the identity of the trajectory, so that each is looked at once."""
+    scenes: dict[int, Scene] = {}
+    for one in instructions:
+        if id(one.trajectory) not in scenes:
+            scenes[id(one.trajectory)] = scene_of(one.trajectory)
+    return scenes
+
+
+def train_mentions(
+    instructions: Sequence[Instruction],
+    common_sense: CommonSense,
+    settings: TreeSettings,
+    *,
+    seed: int,
+    protocols: Sequence[Protocol] = PROTOCOLS,
+    say: Say,
+) -> LearnedModel:
+    """Learn our model from clean instructions of several homes; the same seed, the same model.
+
+    Raises BadParameterError for a single home.
+    """
+    scenes = scenes_of(instructions)
+    fold_of = fold_of_groups([one.group for one in instructions], settings.folds, seed)
+    by_fold = {
+        fold: learn_knowledge(
+            [one for one in instructions if fold_of[one.group] != fold], scenes, common_sense, seed
+        )
+        for fold in sorted(set(fold_of.values()))
+    }
+    say(f"learned what is mentioned where, without each of {len(by_fold)} parts of the homes")
+    scorers: dict[tuple[Protocol, bool], Scorer] = {}
+    names: tuple[str, ...] = ()
+    for protocol in protocols:
+        injector = injector_of(protocol, instructions, common_sense)
+        episodes = list(training_episodes(instructions, injector, seed))
+        say(f"{protocol}: put errors into {len(episodes) // 2} of {len(episodes)} episodes")
+        rows = rows_of(episodes, scenes, lambda group: by_fold[fold_of[group]], say)
+        names = rows.names
+        calibrating = np.array([fold_of[one.group] == 0 for one in episodes])
+        for blind in (False, True):
+            scorers[protocol, blind] = learn_scorer(
+                rows, calibrating, settings, blind=blind, seed=seed, say=say
+            )
+    knowledge = learn_knowledge(instructions, scenes, common_sense, seed)
+    card = {
+        "homes": len(fold_of),
+        "instructions": len(instructions),
+        "seed": seed,
+        "protocols": list(protocols),
+        "trees": asdict(settings),
+    }
+    return LearnedModel(knowledge=knowledge, features=names, scorers=scorers, card=card)

@@ -1,0 +1,140 @@
+"""A learned model on disk: one .npz of plain arrays (no pickles), with all protocols and the blind twins."""
+
+import contextlib
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robustnav_msgs_py.errors import BadFileError
+from robustnav_nodes.instruction.concepts import CONCEPTS, KINDS
+from robustnav_nodes.instruction.injection import Protocol
+from robustnav_nodes.instruction.mention_features import Replacements
+from robustnav_nodes.instruction.mention_model import SUMMARY, Knowledge, MentionModel, Scorer
+from robustnav_nodes.instruction.place_model import PlaceModel
+from robustnav_nodes.instruction.trees import trees_from_arrays
+from robustnav_nodes.instruction.wording import Wording
+
+FORMAT = 1
+_PLACES = ("mean", "scale", "hidden", "out", "log_share", "turns", "climbs")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LearnedModel:
+    """What was learned, by (protocol, blind), and where from: data, seed, settings, figures at training."""
+
+    knowledge: Knowledge
+    features: tuple[str, ...]  # names of the columns that the trees were learned from
+    scorers: Mapping[tuple[Protocol, bool], Scorer]
+    card: Mapping[str, Any]
+
+    def model(self, protocol: Protocol, *, blind: bool = False) -> MentionModel:
+        """A judge for one protocol. Raises BadFileError where the file was not trained for it."""
+        scorer = self.scorers.get((protocol, blind))
+        if scorer is None:
+            known = ", ".join(sorted({name for name, _ in self.scorers}))
+            raise BadFileError(f"the model is not trained for the protocol {protocol!r}, only for {known}")
+        return MentionModel(self.knowledge, scorer, self.features)
+
+
+def save_model(path: Path, model: LearnedModel) -> None:
+    """Write the file whole or not at all. Raises BadFileError where it cannot be written."""
+    arrays: dict[str, NDArray[Any]] = {
+        "words": np.array(list(model.knowledge.wording.words)),
+        "wording/base": model.knowledge.wording.base.astype(np.float32),
+        "wording/beside": model.knowledge.wording.beside.astype(np.float32),
+        "replacements": model.knowledge.replacements.log_share.astype(np.float32),
+    }
+    for part in _PLACES:
+        arrays[f"places/{part}"] = getattr(model.knowledge.places, part).astype(np.float32)
+    scorers = []
+    for (protocol, blind), scorer in model.scorers.items():
+        name = f"{protocol}/{'blind' if blind else 'seeing'}"
+        arrays[f"{name}/head"] = scorer.head
+        for kind in KINDS:
+            for number, trees in enumerate(scorer.trees[kind]):
+                arrays.update(trees.arrays(f"{name}/{kind}/{number}"))
+        count = {kind: len(scorer.trees[kind]) for kind in KINDS}
+        scorers.append({"protocol": protocol, "blind": blind, "trees": count})
+    header = {
+        "format": FORMAT,
+        "features": list(model.features),
+        "scorers": scorers,
+        "card": dict(model.card),
+    }
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        with unfinished.open("wb") as file:
+            np.savez_compressed(file, header=np.array(json.dumps(header)), **arrays)  # type: ignore[arg-type]
+        unfinished.replace(path)
+    except OSError as error:
+        raise BadFileError(f"cannot write the model {str(path)!r}: {error.strerror}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            unfinished.unlink()
+
+
+def load_model(path: Path) -> LearnedModel:
+    """Read what `save_model` wrote. Raises BadFileError where it is something else."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        header = json.loads(str(arrays["header"]))
+        if header["format"] != FORMAT:
+            raise BadFileError(
+                f"the model {str(path)!r} is of format {header['format']!r}; this version reads {FORMAT}: "
+                "train it anew"
+            )
+        return _model(arrays, header)
+    except OSError as error:
+        raise BadFileError(
+            f"cannot read the model {str(path)!r}: {error.strerror or error}; `robustnav train iedl --data "
+            "PACK` makes one"
+        ) from error
+    except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
+        raise BadFileError(f"{str(path)!r} is no model of instruction errors: {error}") from error
+
+
+def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> LearnedModel:
+    features = len(header["features"])
+    scorers: dict[tuple[Protocol, bool], Scorer] = {}
+    for row in header["scorers"]:
+        name = f"{row['protocol']}/{'blind' if row['blind'] else 'seeing'}"
+        scorers[row["protocol"], bool(row["blind"])] = Scorer(
+            trees={
+                kind: tuple(
+                    trees_from_arrays(arrays, f"{name}/{kind}/{number}", features)
+                    for number in range(int(row["trees"][kind]))
+                )
+                for kind in KINDS
+            },
+            head=_shaped(arrays[f"{name}/head"], (SUMMARY,)),
+            blind=bool(row["blind"]),
+        )
+    words = [str(word) for word in arrays["words"]]
+    beside = arrays["wording/beside"].astype(np.float64)
+    return LearnedModel(
+        features=tuple(header["features"]),
+        knowledge=Knowledge(
+            places=PlaceModel(**{part: arrays[f"places/{part}"].astype(np.float64) for part in _PLACES}),
+            wording=Wording(
+                words={word: k for k, word in enumerate(words)},
+                base=_shaped(arrays["wording/base"].astype(np.float64), (len(CONCEPTS),)),
+                beside=_shaped(beside, (len(words), beside.shape[1], len(CONCEPTS))),
+            ),
+            replacements=Replacements(log_share=arrays["replacements"].astype(np.float64)),
+        ),
+        scorers=scorers,
+        card=header["card"],
+    )
+
+
+def _shaped(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    if array.shape != shape:
+        raise ValueError(f"an array is {array.shape}, not {shape}")
+    return array
