@@ -8,8 +8,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.benchmarks.train_iedl_command import train_iedl_command
 
-train_app = typer.Typer(help="Train our own networks on simulated homes.", no_args_is_help=True)
+train_app = typer.Typer(help="Train our own networks.", no_args_is_help=True)
+train_app.command("iedl")(train_iedl_command)
 
 MAX_SEED = 2**31 - 1
 MINUTES = 36.0

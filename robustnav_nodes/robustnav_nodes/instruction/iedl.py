@@ -30,7 +30,7 @@ class IedlShape:
 
 
 class Iedl(nn.Module):  # type: ignore[misc]
-    """Error score and token logits from token numbers [B, 80] and encoded viewpoints [B, T, places]."""
+    """Error score and token logits from token numbers [B, W <= 80] and encoded viewpoints [B, T, places]."""
 
     def __init__(self, shape: IedlShape) -> None:
         super().__init__()
@@ -43,7 +43,7 @@ class Iedl(nn.Module):  # type: ignore[misc]
         self.localise = _head(shape.width, MAX_WORDS)
 
     def forward(self, words: "Tensor", places: "Tensor", walked: "Tensor") -> "tuple[Tensor, Tensor]":
-        """Logit of the error score [B] and of each token [B, 80]; `walked` [B, T] marks real viewpoints."""
+        """Logit of the error score [B] and of each token [B, W]; `walked` [B, T] marks real viewpoints."""
         padded = words == 0
         padded[:, 0] = False  # an instruction of no word is one of a padding token
         said = self.word(words) + _sinusoids(words.shape[1], self.shape.width)
@@ -53,7 +53,7 @@ class Iedl(nn.Module):  # type: ignore[misc]
         for layer in self.layers:
             seen = layer(seen, said, hidden, padded)
         top = seen[:, 0]
-        return self.detect(top).squeeze(1), self.localise(top).masked_fill(padded, -1e4)
+        return self.detect(top).squeeze(1), self.localise(top)[:, : words.shape[1]].masked_fill(padded, -1e4)
 
 
 class CrossModalLayer(nn.Module):  # type: ignore[misc]
@@ -83,7 +83,7 @@ class CrossModalLayer(nn.Module):  # type: ignore[misc]
 def iedl_loss(score: "Tensor", places: "Tensor", label: "Tensor", wrong: "Tensor") -> "Tensor":
     """Binary cross-entropy, and cross-entropy summed over the E wrong tokens, by E (both weights 1).
 
-    `wrong` [B, 80] holds 1 where a wrong span begins; clean instructions have none and only the first term.
+    `wrong` [B, W] holds 1 where a wrong span begins; clean instructions have none and only the first term.
     """
     detection = nn.functional.binary_cross_entropy_with_logits(score, label)
     errors = wrong.sum(dim=1)

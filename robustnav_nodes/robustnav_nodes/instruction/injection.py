@@ -23,7 +23,7 @@ Protocol = Literal["uniform", "matched"]
 PROTOCOLS: tuple[Protocol, ...] = ("uniform", "matched")
 
 MIN_TOKENS = 10  # instructions of fewer are too simple (the thesis' threshold has no number)
-_MATCHED_TRIES = 4  # draws until a kind of a mention counts as not replaceable
+_MATCHED_TRIES = 40  # draws until a kind counts as not replaceable in an instruction
 # A door is nearly everywhere, and no list of objects holds it: whether one was there cannot be looked up.
 _NEVER_MATCHED = frozenset({"door"})
 

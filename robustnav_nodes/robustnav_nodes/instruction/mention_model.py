@@ -14,25 +14,15 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import KINDS
-from robustnav_nodes.instruction.mention_features import Replacements, mention_rows
+from robustnav_nodes.instruction.mention_features.columns import Knowledge
+from robustnav_nodes.instruction.mention_features.rows import mention_rows
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
-from robustnav_nodes.instruction.place_model import PlaceModel
 from robustnav_nodes.instruction.scene import Scene, scene_of
 from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.trees import Trees, mean_log_odds
 from robustnav_nodes.instruction.verdict import Verdict
-from robustnav_nodes.instruction.wording import Wording
 
 MAX_PLACES = 60  # of a longer walk so many, evenly spread, are looked at
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Knowledge:
-    """What is learned from clean instructions, and shared by all scorers."""
-
-    places: PlaceModel
-    wording: Wording
-    replacements: Replacements
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,15 +93,7 @@ class MentionModel:
         if self._last is None or self._last[0] is not trajectory:
             scene = scene_of(_thinned(trajectory))
             self._last = (trajectory, scene, self._knowledge.places.evidence(scene))
-        rows = mention_rows(
-            self._last[1],
-            self._last[2],
-            tokens,
-            mentions,
-            places=self._knowledge.places,
-            wording=self._knowledge.wording,
-            replacements=self._knowledge.replacements,
-        )
+        rows = mention_rows(self._last[1], self._last[2], tokens, mentions, self._knowledge)
         if rows.names != self._features:
             raise BadFileError(
                 "the model was learned from other features than this version computes: train it anew"

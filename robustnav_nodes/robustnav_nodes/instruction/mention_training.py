@@ -5,8 +5,9 @@ always learned without it, in folds over homes: trees that saw their rows on hom
 them too much.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +16,27 @@ from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.common_sense import CommonSense
 from robustnav_nodes.instruction.concepts import KINDS
-from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
-from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
-from robustnav_nodes.instruction.mention_features import mention_rows, replacements_of
-from robustnav_nodes.instruction.mention_model import SUMMARY, Knowledge, Scorer, episode_summary
-from robustnav_nodes.instruction.mentions import Mention, find_mentions
+from robustnav_nodes.instruction.episodes import Instruction
+from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol
+from robustnav_nodes.instruction.mention_data import (
+    LearnedRows,
+    Say,
+    part_of,
+    rows_of,
+    scenes_of,
+    training_episodes,
+)
+from robustnav_nodes.instruction.mention_features.columns import Knowledge
+from robustnav_nodes.instruction.mention_features.replacements import replacements_of
+from robustnav_nodes.instruction.mention_model import SUMMARY, Scorer, episode_summary
+from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel
 from robustnav_nodes.instruction.place_model import SaidOnWalk, learn_places
-from robustnav_nodes.instruction.scene import Scene, scene_of
+from robustnav_nodes.instruction.scene import Scene
+from robustnav_nodes.instruction.surprise import learn_surprise
 from robustnav_nodes.instruction.trees import Trees, trees_of
 from robustnav_nodes.instruction.wording import learn_wording
 
-Say = Callable[[str], None]
 _HOMES_TO_CALIBRATE = 12  # one in so many
 
 
@@ -42,19 +52,6 @@ class TreeSettings:
     clean_share: float = 0.5  # of the mentions that are right, so many are learned from
     ensembles: int = 2
     folds: int = 4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LearnedRows:
-    """Rows of many episodes: `episode` is the number of each row's episode, `wrong` 1 where it was put in."""
-
-    values: NDArray[np.float32]
-    episode: NDArray[np.int64]
-    kind: NDArray[np.int64]  # an index into KINDS
-    wrong: NDArray[np.int64]
-    label: NDArray[np.int64]  # by episode
-    names: tuple[str, ...]  # of the columns of `values`
-    blind: int
 
 
 def learn_knowledge(
@@ -94,69 +91,6 @@ def fold_of_groups(groups: Sequence[str], folds: int, seed: int) -> dict[str, in
         names[k]: 0 if place < calibrating else 1 + place % min(folds, len(names) - calibrating)
         for place, k in enumerate(order)
     }
-
-
-def training_episodes(
-    instructions: Sequence[Instruction], injector: Injector, seed: int
-) -> Iterator[ErrorEpisode]:
-    """Every instruction once clean for each type of error, and once with it."""
-    for number, error_type in enumerate(ERROR_TYPES):
-        yield from error_episodes(instructions, error_type, injector, seed + number)
-
-
-def rows_of(
-    episodes: Sequence[ErrorEpisode],
-    scenes: dict[int, Scene],
-    knowledge_of: Callable[[str], Knowledge],
-    say: Say,
-) -> LearnedRows:
-    """Describe every mention of every episode, each by the knowledge for its home."""
-    values, episode, kind, wrong = [], [], [], []
-    known: dict[tuple[int, int], Float64] = {}
-    names: tuple[str, ...] = ()
-    blind = 0
-    for number, one in enumerate(episodes):
-        knowledge = knowledge_of(one.group)
-        scene = scenes[id(one.trajectory)]
-        key = (id(one.trajectory), id(knowledge))
-        if key not in known:
-            known[key] = knowledge.places.evidence(scene)
-        mentions = find_mentions(one.tokens)
-        rows = mention_rows(
-            scene,
-            known[key],
-            one.tokens,
-            mentions,
-            places=knowledge.places,
-            wording=knowledge.wording,
-            replacements=knowledge.replacements,
-        )
-        names, blind = rows.names, rows.blind
-        values.append(rows.values)
-        episode += [number] * len(mentions)
-        kind += [KINDS.index(m.kind) for m in mentions]
-        wrong += [int(is_wrong(m, one)) for m in mentions]
-        if number and number % 20_000 == 0:
-            say(f"described {number} of {len(episodes)} episodes")
-    return LearnedRows(
-        values=np.concatenate(values),
-        episode=np.array(episode, dtype=np.int64),
-        kind=np.array(kind, dtype=np.int64),
-        wrong=np.array(wrong, dtype=np.int64),
-        label=np.array([one.label for one in episodes], dtype=np.int64),
-        names=names,
-        blind=blind,
-    )
-
-
-def is_wrong(mention: Mention, episode: ErrorEpisode) -> bool:
-    """Whether a wrong span of its kind overlaps the mention."""
-    return any(
-        span.kind == mention.kind
-        and span.start < mention.start + mention.length
-        and mention.start < span.start + span.length
-        for span in episode.wrong
-    )
 
 
 def learn_trees(
@@ -230,38 +164,6 @@ def learn_scorer(
     return Scorer(trees=trees, head=head, blind=blind)
 
 
-def part_of(rows: LearnedRows, episodes: NDArray[np.bool_]) -> LearnedRows:
-    """The rows of some episodes, numbered anew."""
-    kept = episodes[rows.episode]
-    number = np.cumsum(episodes) - 1
-    return LearnedRows(
-        values=rows.values[kept],
-        episode=number[rows.episode[kept]],
-        kind=rows.kind[kept],
-        wrong=rows.wrong[kept],
-        label=rows.label[episodes],
-        names=rows.names,
-        blind=rows.blind,
-    )
-
-
-def injector_of(
-    protocol: Protocol, instructions: Sequence[Instruction], common_sense: CommonSense
-) -> Injector:
-    """The injector of a protocol; `matched` knows the wording of all instructions."""
-    wording = learn_wording(one.tokens for one in instructions) if protocol == "matched" else None
-    return Injector(common_sense=common_sense, wording=wording)
-
-
-def scenes_of(instructions: Sequence[Instruction]) -> dict[int, Scene]:
-    """By the identity of the trajectory, so that each is looked at once."""
-    scenes: dict[int, Scene] = {}
-    for one in instructions:
-        if id(one.trajectory) not in scenes:
-            scenes[id(one.trajectory)] = scene_of(one.trajectory)
-    return scenes
-
-
 def train_mentions(
     instructions: Sequence[Instruction],
     common_sense: CommonSense,
@@ -284,25 +186,41 @@ def train_mentions(
         for fold in sorted(set(fold_of.values()))
     }
     say(f"learned what is mentioned where, without each of {len(by_fold)} parts of the homes")
+
+    def knowledge_of(home: str) -> Knowledge:
+        return by_fold[fold_of[home]]
+
     scorers: dict[tuple[Protocol, bool], Scorer] = {}
     names: tuple[str, ...] = ()
     for protocol in protocols:
-        injector = injector_of(protocol, instructions, common_sense)
+        injector = partial(_injector, protocol, common_sense, knowledge_of)
         episodes = list(training_episodes(instructions, injector, seed))
         say(f"{protocol}: put errors into {len(episodes) // 2} of {len(episodes)} episodes")
-        rows = rows_of(episodes, scenes, lambda group: by_fold[fold_of[group]], say)
+        rows = rows_of(episodes, scenes, knowledge_of, say)
         names = rows.names
         calibrating = np.array([fold_of[one.group] == 0 for one in episodes])
         for blind in (False, True):
             scorers[protocol, blind] = learn_scorer(
                 rows, calibrating, settings, blind=blind, seed=seed, say=say
             )
-    knowledge = learn_knowledge(instructions, scenes, common_sense, seed)
-    card = {
-        "homes": len(fold_of),
-        "instructions": len(instructions),
-        "seed": seed,
-        "protocols": list(protocols),
-        "trees": asdict(settings),
-    }
-    return LearnedModel(knowledge=knowledge, features=names, scorers=scorers, card=card)
+    return LearnedModel(
+        knowledge=learn_knowledge(instructions, scenes, common_sense, seed),
+        features=names,
+        scorers=scorers,
+        surprise=learn_surprise(one.tokens for one in instructions),
+        card={
+            "homes": len(fold_of),
+            "instructions": len(instructions),
+            "seed": seed,
+            "protocols": list(protocols),
+            "trees": asdict(settings),
+        },
+    )
+
+
+def _injector(
+    protocol: Protocol, common_sense: CommonSense, knowledge_of: Callable[[str], Knowledge], home: str
+) -> Injector:
+    """Matched by the wording of other homes: by its own, what stands there always fits best."""
+    wording = knowledge_of(home).wording if protocol == "matched" else None
+    return Injector(common_sense=common_sense, wording=wording)

@@ -1,12 +1,15 @@
-"""A learned model on disk: one .npz of plain arrays (no pickles), with all protocols and the blind twins."""
+"""Learned models on disk: one .npz of plain arrays (no pickles) with ours, its blind twins and IEDL.
+
+IEDL needs torch, ours does not: a robot that runs ours never imports it.
+"""
 
 import contextlib
 import json
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +17,18 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.instruction.concepts import CONCEPTS, KINDS
 from robustnav_nodes.instruction.injection import Protocol
-from robustnav_nodes.instruction.mention_features import Replacements
-from robustnav_nodes.instruction.mention_model import SUMMARY, Knowledge, MentionModel, Scorer
+from robustnav_nodes.instruction.mention_features.columns import Knowledge
+from robustnav_nodes.instruction.mention_features.replacements import Replacements
+from robustnav_nodes.instruction.mention_model import SUMMARY, MentionModel, Scorer
 from robustnav_nodes.instruction.place_model import PlaceModel
+from robustnav_nodes.instruction.surprise import Surprise, surprise_from_arrays
 from robustnav_nodes.instruction.trees import trees_from_arrays
 from robustnav_nodes.instruction.wording import Wording
 
+if TYPE_CHECKING:
+    from robustnav_nodes.instruction.iedl_model import IedlModel
+
+SHIPPED = Path(__file__).with_name("weights.npz")
 FORMAT = 1
 _PLACES = ("mean", "scale", "hidden", "out", "log_share", "turns", "climbs")
 
@@ -31,7 +40,10 @@ class LearnedModel:
     knowledge: Knowledge
     features: tuple[str, ...]  # names of the columns that the trees were learned from
     scorers: Mapping[tuple[Protocol, bool], Scorer]
+    surprise: Surprise
     card: Mapping[str, Any]
+    iedl_arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # of iedl_model.arrays_of_iedl
+    iedl_shape: Mapping[str, Any] | None = None  # None: IEDL was not trained
 
     def model(self, protocol: Protocol, *, blind: bool = False) -> MentionModel:
         """A judge for one protocol. Raises BadFileError where the file was not trained for it."""
@@ -41,6 +53,14 @@ class LearnedModel:
             raise BadFileError(f"the model is not trained for the protocol {protocol!r}, only for {known}")
         return MentionModel(self.knowledge, scorer, self.features)
 
+    def iedl(self) -> "IedlModel | None":
+        """The thesis' model, where it was trained. Raises BadFileError where its weights do not fit."""
+        if self.iedl_shape is None:
+            return None
+        from robustnav_nodes.instruction.iedl_model import iedl_from_arrays
+
+        return iedl_from_arrays(self.iedl_arrays, self.iedl_shape)
+
 
 def save_model(path: Path, model: LearnedModel) -> None:
     """Write the file whole or not at all. Raises BadFileError where it cannot be written."""
@@ -49,6 +69,8 @@ def save_model(path: Path, model: LearnedModel) -> None:
         "wording/base": model.knowledge.wording.base.astype(np.float32),
         "wording/beside": model.knowledge.wording.beside.astype(np.float32),
         "replacements": model.knowledge.replacements.log_share.astype(np.float32),
+        **model.surprise.arrays(),
+        **model.iedl_arrays,
     }
     for part in _PLACES:
         arrays[f"places/{part}"] = getattr(model.knowledge.places, part).astype(np.float32)
@@ -66,6 +88,7 @@ def save_model(path: Path, model: LearnedModel) -> None:
         "features": list(model.features),
         "scorers": scorers,
         "card": dict(model.card),
+        "iedl": None if model.iedl_shape is None else dict(model.iedl_shape),
     }
     unfinished = path.with_name(path.name + ".part")
     try:
@@ -130,7 +153,10 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
             replacements=Replacements(log_share=arrays["replacements"].astype(np.float64)),
         ),
         scorers=scorers,
+        surprise=surprise_from_arrays(arrays),
         card=header["card"],
+        iedl_arrays={name: array for name, array in arrays.items() if name.startswith("iedl")},
+        iedl_shape=header["iedl"],
     )
 
 

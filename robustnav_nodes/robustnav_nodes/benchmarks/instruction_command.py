@@ -1,0 +1,177 @@
+"""`robustnav bench instruction`."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from robustnav_msgs_py.errors import BadParameterError
+
+if TYPE_CHECKING:
+    from robustnav_nodes.benchmarks.instruction_bench import Calibration, InstructionRow, PairRow
+
+MAX_SEED = 2**31 - 1
+BEST = "mentions"
+_TYPES = ("direction", "room", "object", "room_object", "all", "mean")
+
+
+class ProtocolChoice(StrEnum):
+    """How the wrong words were drawn."""
+
+    UNIFORM = "uniform"
+    MATCHED = "matched"
+    BOTH = "both"
+
+
+def instruction_command(
+    data: Annotated[
+        Path | None, typer.Option(help="folder of a semantic R2R pack; default: homes made for this")
+    ] = None,
+    suite: Annotated[
+        str, typer.Option("--suite", "--split", help="split of the pack: val_seen, val_unseen …")
+    ] = "val_unseen",
+    model: Annotated[
+        Path | None, typer.Option(help="what `robustnav train iedl` wrote; default: what comes along")
+    ] = None,
+    protocol: Annotated[ProtocolChoice, typer.Option(help="how wrong words are drawn")] = ProtocolChoice.BOTH,
+    models: Annotated[str | None, typer.Option(help="a,b,c; default: all of them")] = None,
+    episodes: Annotated[
+        int | None, typer.Option(min=2, help="of each type of error, drawn by the seed; default: all")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="decides homes, draws and chance")] = 1,
+    plots: Annotated[Path | None, typer.Option(help="folder to draw pictures into")] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="write the figures to this file too")
+    ] = None,
+) -> None:
+    """How well wrong instructions are told from right ones, and the wrong words found in them."""
+    from robustnav_nodes.benchmarks.instruction_bench import (
+        THESIS,
+        calibration_of,
+        judge_episodes,
+        mean_row,
+        pair_rows,
+        row_of,
+    )
+    from robustnav_nodes.benchmarks.instruction_contestants import contestants_of
+    from robustnav_nodes.benchmarks.instruction_episodes import bench_episodes
+    from robustnav_nodes.benchmarks.report_file import check_writable, write_report
+    from robustnav_nodes.instruction.model_file import SHIPPED, load_model
+
+    check_writable(json_file)
+    if plots is not None and not plots.is_dir():
+        raise BadParameterError(f"--plots {str(plots)!r} is no folder; make it first")
+    console = Console(highlight=False)
+    learned = load_model(model or SHIPPED)
+    wanted = None if models is None else [name.strip() for name in models.split(",")]
+    began = time.monotonic()
+    console.print("[dim]reading the walks and what was said[/]")
+    found = bench_episodes(data, suite, _protocols(protocol), episodes, seed)
+    rows: list[InstructionRow] = []
+    pairs: list[PairRow] = []
+    calibrations: list[Calibration] = []
+    columns = (TextColumn("judging"), BarColumn(), MofNCompleteColumn(), TextColumn("episodes"))
+    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
+        asked = {name: contestants_of(learned, name, seed, wanted) for name in found}
+        total = sum(len(part) * len(asked[name]) for name, parts in found.items() for part in parts.values())
+        task = progress.add_task("", total=total)
+        for name, parts in found.items():
+            for contestant, judge in asked[name].items():
+                judged = [
+                    judge_episodes(contestant, judge, name, error_type, part, lambda: progress.advance(task))
+                    for error_type, part in parts.items()
+                ]
+                of_types = [row_of(one) for one in judged]
+                rows += [*of_types, mean_row(of_types, judged)]
+                pairs += pair_rows(judged[0])
+                if contestant in (BEST, "iedl"):
+                    calibrations.append(calibration_of(judged))
+    _show(console, rows)
+    _show_pairs(console, [row for row in pairs if row.model == BEST])
+    _show_calibration(console, calibrations)
+    if plots is not None:
+        from robustnav_nodes.benchmarks.instruction_plots import draw
+
+        draw(rows, calibrations, plots)
+    if json_file is not None:
+        settings = {
+            "data": "generated" if data is None else data.name,
+            "model": "shipped" if model is None else model.name,
+            "trained_on": learned.card.get("data"),
+            "episodes_of_a_type": episodes,
+        }
+        write_report(
+            json_file,
+            "instruction",
+            suite=suite,
+            seed=seed,
+            settings=settings,
+            seconds=round(time.monotonic() - began, 1),
+            rows=[asdict(row) for row in rows],
+            pairs=[asdict(row) for row in pairs],
+            calibration=[asdict(one) for one in calibrations],
+            thesis={name: {key: list(two) for key, two in types.items()} for name, types in THESIS.items()},
+        )
+
+
+def _protocols(choice: ProtocolChoice) -> tuple[Any, ...]:
+    from robustnav_nodes.instruction.injection import PROTOCOLS
+
+    return PROTOCOLS if choice is ProtocolChoice.BOTH else (choice.value,)
+
+
+def _show(console: Console, rows: "Sequence[InstructionRow]") -> None:
+    from robustnav_nodes.benchmarks.instruction_bench import THESIS
+
+    for protocol in dict.fromkeys(row.protocol for row in rows):
+        table = Table(
+            title=f"{protocol}: AUC / ATD in tokens", title_justify="left", box=None, header_style="dim"
+        )
+        table.add_column("", no_wrap=True)
+        for name in _TYPES:
+            table.add_column(name.replace("_", " & "), justify="right", no_wrap=True)
+        table.add_column("mean AUC, 95 %", justify="right", no_wrap=True)
+        table.add_column("ms", justify="right", no_wrap=True)
+        of_protocol = [row for row in rows if row.protocol == protocol]
+        for model in dict.fromkeys(row.model for row in of_protocol):
+            by_type = {row.error_type: row for row in of_protocol if row.model == model}
+            mean = by_type["mean"]
+            interval = "–" if mean.auc_ci is None else f"{mean.auc_ci[0]:.3f}–{mean.auc_ci[1]:.3f}"
+            cells = [_two(by_type[name].auc, by_type[name].atd) for name in _TYPES]
+            table.add_row(model, *cells, interval, f"{mean.judge_ms:.1f}")
+        if protocol == "uniform":
+            for model, types in THESIS.items():
+                table.add_row(
+                    f"[dim]{model}[/]", *(_two(*types.get(name, (None, None))) for name in _TYPES), "", ""
+                )
+        console.print(table)
+    console.print("[dim]The thesis' rows are of other data (R2RIE-CE, its own visual features).[/]\n")
+
+
+def _show_pairs(console: Console, rows: "Sequence[PairRow]") -> None:
+    for protocol in dict.fromkeys(row.protocol for row in rows):
+        told = ", ".join(
+            f"{row.pair} {'–' if row.auc is None else f'{row.auc:.2f}'} ({row.episodes})"
+            for row in rows
+            if row.protocol == protocol
+        )
+        console.print(f"{BEST}, {protocol}, AUC by pair of opposites (episodes): {told}")
+
+
+def _show_calibration(console: Console, rows: "Sequence[Calibration]") -> None:
+    for row in rows:
+        console.print(
+            f"{row.model}, {row.protocol}: calibration error {row.error:.3f}, and {row.error_scaled:.3f} with "
+            f"a temperature of {row.temperature:.2f} found on other homes"
+        )
+
+
+def _two(one: float | None, other: float | None) -> str:
+    return f"{'–' if one is None else f'{one:.2f}'}/{'–' if other is None else f'{other:.1f}'}"

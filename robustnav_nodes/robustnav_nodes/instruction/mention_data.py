@@ -1,0 +1,119 @@
+"""What our model learns from: errors put into clean instructions, and every mention of them as a row."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robustnav_msgs_py.values import Float64
+from robustnav_nodes.instruction.concepts import KINDS
+from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
+from robustnav_nodes.instruction.injection import Injector, error_episodes
+from robustnav_nodes.instruction.mention_features.columns import Knowledge
+from robustnav_nodes.instruction.mention_features.rows import MentionRows, mention_rows
+from robustnav_nodes.instruction.mentions import Mention, find_mentions
+from robustnav_nodes.instruction.scene import Scene, scene_of
+
+Say = Callable[[str], None]
+_TOLD_EVERY = 20_000  # episodes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LearnedRows:
+    """Rows of many episodes: `episode` is the number of each row's episode, `wrong` 1 where it was put in."""
+
+    values: NDArray[np.float32]
+    episode: NDArray[np.int64]
+    kind: NDArray[np.int64]  # an index into KINDS
+    wrong: NDArray[np.int64]
+    label: NDArray[np.int64]  # by episode
+    names: tuple[str, ...]  # of the columns of `values`
+    blind: int
+
+
+def training_episodes(
+    instructions: Sequence[Instruction], injector_of: Callable[[str], Injector], seed: int
+) -> Iterator[ErrorEpisode]:
+    """Every instruction once clean for each type of error, and once with it; an injector for each home."""
+    for number, error_type in enumerate(ERROR_TYPES):
+        for one in instructions:
+            yield from error_episodes([one], error_type, injector_of(one.group), seed + number)
+
+
+def rows_of(
+    episodes: Sequence[ErrorEpisode],
+    scenes: dict[int, Scene],
+    knowledge_of: Callable[[str], Knowledge],
+    say: Say,
+) -> LearnedRows:
+    """Describe every mention of every episode, each by the knowledge for its home."""
+    values, episode, kind, wrong = [], [], [], []
+    evidence: dict[tuple[int, int], Float64] = {}
+    described: dict[tuple[int, tuple[str, ...]], tuple[tuple[Mention, ...], MentionRows]] = {}
+    names: tuple[str, ...] = ()
+    blind = 0
+    for number, one in enumerate(episodes):
+        walk = id(one.trajectory)
+        knowledge = knowledge_of(one.group)
+        scene = scenes[walk]
+        if (walk, id(knowledge)) not in evidence:
+            evidence[walk, id(knowledge)] = knowledge.places.evidence(scene)
+        known = described.get((walk, one.tokens))  # clean ones come once for each type of error
+        if known is None:
+            mentions = find_mentions(one.tokens)
+            rows = mention_rows(scene, evidence[walk, id(knowledge)], one.tokens, mentions, knowledge)
+            if not one.wrong:
+                described[walk, one.tokens] = mentions, rows
+        else:
+            mentions, rows = known
+        names, blind = rows.names, rows.blind
+        values.append(rows.values)
+        episode += [number] * len(mentions)
+        kind += [KINDS.index(m.kind) for m in mentions]
+        wrong += [int(is_wrong(m, one)) for m in mentions]
+        if number and number % _TOLD_EVERY == 0:
+            say(f"described {number} of {len(episodes)} episodes")
+    return LearnedRows(
+        values=np.concatenate(values),
+        episode=np.array(episode, dtype=np.int64),
+        kind=np.array(kind, dtype=np.int64),
+        wrong=np.array(wrong, dtype=np.int64),
+        label=np.array([one.label for one in episodes], dtype=np.int64),
+        names=names,
+        blind=blind,
+    )
+
+
+def is_wrong(mention: Mention, episode: ErrorEpisode) -> bool:
+    """Whether a wrong span of its kind overlaps the mention."""
+    return any(
+        span.kind == mention.kind
+        and span.start < mention.start + mention.length
+        and mention.start < span.start + span.length
+        for span in episode.wrong
+    )
+
+
+def part_of(rows: LearnedRows, episodes: NDArray[np.bool_]) -> LearnedRows:
+    """The rows of some episodes, numbered anew."""
+    kept = episodes[rows.episode]
+    number = np.cumsum(episodes) - 1
+    return LearnedRows(
+        values=rows.values[kept],
+        episode=number[rows.episode[kept]],
+        kind=rows.kind[kept],
+        wrong=rows.wrong[kept],
+        label=rows.label[episodes],
+        names=rows.names,
+        blind=rows.blind,
+    )
+
+
+def scenes_of(instructions: Sequence[Instruction]) -> dict[int, Scene]:
+    """By the identity of the trajectory, so that each is looked at once."""
+    scenes: dict[int, Scene] = {}
+    for one in instructions:
+        if id(one.trajectory) not in scenes:
+            scenes[id(one.trajectory)] = scene_of(one.trajectory)
+    return scenes
