@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.benchmarks.instruction_data_commands import instructions_command
 
 if TYPE_CHECKING:  # loads numba, which no other command should wait for
     from robustnav_nodes.benchmarks.search_scene import SearchScene
@@ -19,6 +20,8 @@ import_app = typer.Typer(help="Bring data in from other formats.", no_args_is_he
 export_app = typer.Typer(help="Take data out to other formats.", no_args_is_help=True)
 data_app.add_typer(import_app, name="import")
 data_app.add_typer(export_app, name="export")
+
+data_app.command("instructions")(instructions_command)
 
 _NAMED = 4  # targets named in a summary
 MAX_SEED = 2**31 - 1
