@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from robustnav_nodes.benchmarks.search_plan import PlayedEpisode, SceneJob
 
 bench_app = typer.Typer(
-    help="Measure planners, detectors, instruction errors, the simulator and the recorder.", no_args_is_help=True
+    help="Measure planners, detectors, instruction errors, the simulator and the recorder.",
+    no_args_is_help=True,
 )
 bench_app.command("variants")(variants_command)
 bench_app.command("detection")(detection_command)

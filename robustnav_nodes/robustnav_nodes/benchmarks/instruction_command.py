@@ -168,8 +168,8 @@ def _show_pairs(console: Console, rows: "Sequence[PairRow]") -> None:
 def _show_calibration(console: Console, rows: "Sequence[Calibration]") -> None:
     for row in rows:
         console.print(
-            f"{row.model}, {row.protocol}: calibration error {row.error:.3f}, and {row.error_scaled:.3f} with "
-            f"a temperature of {row.temperature:.2f} found on other homes"
+            f"{row.model}, {row.protocol}: calibration error {row.error:.3f}; {row.error_scaled:.3f} with a "
+            f"temperature of {row.temperature:.2f} found on other homes"
         )
 
 

@@ -1,4 +1,4 @@
-"""Pictures of how well wrong instructions are found: AUC by type of error, and how far scores can be trusted."""
+"""Pictures of how well wrong instructions are found: AUC by type of error, and reliability of the scores."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -60,9 +60,7 @@ def train_iedl_command(
         seed=seed,
         iedl=IedlSettings(minutes=minutes, width=width) if minutes > 0.0 else None,
     )
-    _, curve = train_models(
-        lessons.instructions, lessons.common_sense, plan, out, resume=resume, say=say
-    )
+    _, curve = train_models(lessons.instructions, lessons.common_sense, plan, out, resume=resume, say=say)
     if curve:
         _save_curve(curve, out.with_suffix(".curve.json"))
     say(f"{out}: judge it with `robustnav bench instruction --model {out}`")

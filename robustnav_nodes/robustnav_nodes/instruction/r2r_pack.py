@@ -139,13 +139,17 @@ class R2rPack:
                 found.append((said, [(len(words), first, last) for words, first, last in chunks]))
         return found
 
+    def has_episodes(self, split: str, protocol: Protocol) -> bool:
+        """Whether the pack holds errors of every type for a split."""
+        return all(self._folder.has(_error_file(split, protocol, name)) for name in ERROR_TYPES)
+
     def episodes(self, split: str, protocol: Protocol, error_type: str) -> list[ErrorEpisode]:
         """The pack's own episodes of one type of error, clean and perturbed."""
         if error_type not in ERROR_TYPES:
             raise BadFileError(f"{error_type!r} is no type of error; there are {', '.join(ERROR_TYPES)}")
         paths = self.paths(split)
-        name = f"errors_{protocol}/{split}_{error_type}.jsonl.gz"
-        return [_episode(row, error_type, paths) for row in self._folder.rows(name)]
+        rows = self._folder.rows(_error_file(split, protocol, error_type))
+        return [_episode(row, error_type, paths) for row in rows]
 
     def common_sense(self) -> CommonSense:
         """The adjoining rooms and co-located objects that the pack's own errors were drawn from."""
@@ -215,6 +219,10 @@ class R2rPack:
                         else 0.0,
                         range_m=range_m,
                     )
+
+
+def _error_file(split: str, protocol: Protocol, error_type: str) -> str:
+    return f"errors_{protocol}/{split}_{error_type}.jsonl.gz"
 
 
 def _near(row: Row) -> tuple[tuple[str, float | None, float | None, float | None, int], ...]:

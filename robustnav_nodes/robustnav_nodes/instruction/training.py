@@ -77,8 +77,8 @@ def _taken_up(kept: Path, plan: TrainingPlan, instructions: int) -> LearnedModel
     for name, value in wanted.items():
         if model.card.get(name) != value:
             raise BadFileError(
-                f"{str(kept)!r} was trained with {name} = {model.card.get(name)!r}, not {value!r}: remove it, "
-                "or name another --out"
+                f"{str(kept)!r} was trained with {name} = {model.card.get(name)!r}, not {value!r}: remove "
+                "it, or name another --out"
             )
     return model
 

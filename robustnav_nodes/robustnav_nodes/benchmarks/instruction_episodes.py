@@ -1,0 +1,107 @@
+"""What models of instruction errors learn from and are judged on: a pack, or homes made for it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.benchmarks.generated_instructions import (
+    VAL_UNSEEN,
+    GenerationPlan,
+    generated_instructions,
+)
+from robustnav_nodes.benchmarks.instruction_bench import chosen_pairs
+from robustnav_nodes.instruction.common_sense import CommonSense, derive_common_sense
+from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
+from robustnav_nodes.instruction.injection import Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.pack_errors import TRAIN
+from robustnav_nodes.instruction.r2r_pack import R2rPack
+from robustnav_nodes.instruction.wording import learn_wording
+
+# Homes of seeds from here on are not trained on (`robustnav train iedl` begins at its --seed).
+UNSEEN_SEED = 500_000
+BENCH_HOMES = 60
+
+Episodes = dict[Protocol, dict[str, list[ErrorEpisode]]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lessons:
+    """Clean instructions to learn from, what may be confused in them, and where they come from."""
+
+    instructions: Sequence[Instruction]
+    common_sense: CommonSense
+    name: str
+
+
+def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
+    """Of a pack, or of `homes` homes of the seeds from `seed` on.
+
+    Raises BadFileError for a pack that is none, BadParameterError for seeds that are kept for judging.
+    """
+    if data is not None:
+        pack = R2rPack(data)
+        return Lessons(
+            instructions=pack.instructions(split),
+            common_sense=pack.common_sense(),
+            name=f"{data.name}, {split}",
+        )
+    plan = GenerationPlan(seed=seed, homes=homes, unseen=0)
+    if plan.last_seed >= UNSEEN_SEED:
+        raise BadParameterError(
+            f"homes from seed {UNSEEN_SEED} on are kept for judging; --seed {seed} with --homes {homes} "
+            "would learn from them"
+        )
+    instructions = list(generated_instructions(plan, TRAIN))
+    return Lessons(
+        instructions=instructions,
+        common_sense=derive_common_sense(instructions),
+        name=f"generated, homes {plan.seed} to {plan.last_seed}",
+    )
+
+
+def bench_episodes(
+    data: Path | None, split: str, protocols: Sequence[Protocol], at_most: int | None, seed: int
+) -> Episodes:
+    """Clean and perturbed episodes by protocol and type of error, `at_most` of each.
+
+    Those of the pack where it holds any, else put in anew by the seed. Raises BadFileError for a pack that is
+    none, or has no such split.
+    """
+    found: Episodes = {}
+    pack = R2rPack(data) if data is not None else None
+    if pack is not None and all(pack.has_episodes(split, protocol) for protocol in protocols):
+        for protocol in protocols:
+            found[protocol] = {name: pack.episodes(split, protocol, name) for name in ERROR_TYPES}
+    elif pack is not None:
+        instructions = pack.instructions(split)
+        for protocol in protocols:
+            found[protocol] = _put_in(instructions, pack.common_sense(), protocol, seed)
+    else:
+        plan = GenerationPlan(seed=UNSEEN_SEED + seed, homes=0, unseen=BENCH_HOMES)
+        instructions = list(generated_instructions(plan, VAL_UNSEEN))
+        common_sense = derive_common_sense(instructions)
+        for protocol in protocols:
+            found[protocol] = _put_in(instructions, common_sense, protocol, seed)
+    return {
+        protocol: {name: chosen_pairs(part, at_most, seed) for name, part in by_type.items()}
+        for protocol, by_type in found.items()
+    }
+
+
+def _put_in(
+    instructions: Sequence[Instruction], common_sense: CommonSense, protocol: Protocol, seed: int
+) -> dict[str, list[ErrorEpisode]]:
+    """Matched by the wording of the other half of the homes: by their own, what stands there fits best."""
+    homes = sorted({one.group for one in instructions})
+    halves = (set(homes[::2]), set(homes[1::2]))
+    found: dict[str, list[ErrorEpisode]] = {name: [] for name in ERROR_TYPES}
+    for half in halves:
+        wording = None
+        if protocol == "matched":
+            wording = learn_wording(one.tokens for one in instructions if one.group not in half)
+        injector = Injector(common_sense=common_sense, wording=wording)
+        own = [one for one in instructions if one.group in half]
+        for name, episodes in found.items():
+            episodes += error_episodes(own, name, injector, seed)
+    return found
