@@ -9,16 +9,17 @@ PYTHON ?= python3
 ROS := $(ROS_DISTRO)
 VENV_OPTIONS := --system-site-packages
 EXTRAS := sim
+DEV_EXTRAS := sim,dev
 PINS = $(VENV)/numpy-of-$(ROS).txt
 else
 # 3.11 where there is one: the newest Python that PyBullet has wheels for.
 PYTHON ?= $(shell python3.11 -c 'import sys; print(sys.executable)' 2>/dev/null || echo python3)
 ROS := wheels
 EXTRAS := ros,sim
+# The learned models are tested where the pins keep torch to one release.
+DEV_EXTRAS := ros,sim,learn,open-vocabulary,dev
 PINS = constraints.txt
 endif
-
-DEV_EXTRAS := $(EXTRAS),dev
 
 # Each stamp is named after the ROS it was made for: sourcing another one makes .venv anew.
 MADE := $(VENV)/.made-for-$(ROS)

@@ -15,6 +15,7 @@ from rich.table import Table
 from robustnav_msgs_py.errors import BadParameterError, RobustnavError
 from robustnav_nodes.benchmarks.bench_commands import bench_app
 from robustnav_nodes.benchmarks.data_commands import data_app
+from robustnav_nodes.benchmarks.instruction_commands import instruction_app
 from robustnav_nodes.benchmarks.train_commands import train_app
 
 app = typer.Typer(
@@ -26,6 +27,7 @@ app = typer.Typer(
 app.add_typer(bench_app, name="bench")
 app.add_typer(data_app, name="data")
 app.add_typer(train_app, name="train")
+app.add_typer(instruction_app, name="instruction")
 
 DEMO_SPEED = 4.0
 DEMO_LIMIT_S = 110.0  # at that speed; slower ones take longer

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Sequence
 from dataclasses import asdict
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.benchmarks.instruction_protocols import ProtocolChoice
 
 if TYPE_CHECKING:
     from robustnav_nodes.benchmarks.instruction_bench import Calibration, InstructionRow, PairRow
@@ -20,14 +20,6 @@ if TYPE_CHECKING:
 MAX_SEED = 2**31 - 1
 BEST = "mentions"
 _TYPES = ("direction", "room", "object", "room_object", "all", "mean")
-
-
-class ProtocolChoice(StrEnum):
-    """How the wrong words were drawn."""
-
-    UNIFORM = "uniform"
-    MATCHED = "matched"
-    BOTH = "both"
 
 
 def instruction_command(

@@ -33,12 +33,14 @@ class LearnedRows:
 
 
 def training_episodes(
-    instructions: Sequence[Instruction], injector_of: Callable[[str], Injector], seed: int
+    instructions: Sequence[Instruction], injector_of: Callable[[str], Injector], draws: int, seed: int
 ) -> Iterator[ErrorEpisode]:
-    """Every instruction once clean for each type of error, and once with it; an injector for each home."""
-    for number, error_type in enumerate(ERROR_TYPES):
+    """Every instruction clean and with each type of error, drawn `draws` times; an injector for each home."""
+    for number in range(draws):
         for one in instructions:
-            yield from error_episodes([one], error_type, injector_of(one.group), seed + number)
+            injector = injector_of(one.group)
+            for error_type in ERROR_TYPES:
+                yield from error_episodes([one], error_type, injector, seed + number)
 
 
 def rows_of(

@@ -5,8 +5,8 @@ always learned without it, in folds over homes: trees that saw their rows on hom
 them too much.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from functools import partial
 
 import numpy as np
@@ -51,6 +51,8 @@ class TreeSettings:
     features_at_a_split: float = 0.3
     clean_share: float = 0.5  # of the mentions that are right, so many are learned from
     ensembles: int = 2
+    # matched errors are hard to find and, of most types, rare
+    draws: Mapping[Protocol, int] = field(default_factory=lambda: {"uniform": 1, "matched": 2})
     folds: int = 4
 
 
@@ -194,7 +196,7 @@ def train_mentions(
     names: tuple[str, ...] = ()
     for protocol in protocols:
         injector = partial(_injector, protocol, common_sense, knowledge_of)
-        episodes = list(training_episodes(instructions, injector, seed))
+        episodes = list(training_episodes(instructions, injector, settings.draws[protocol], seed))
         say(f"{protocol}: put errors into {len(episodes) // 2} of {len(episodes)} episodes")
         rows = rows_of(episodes, scenes, knowledge_of, say)
         names = rows.names

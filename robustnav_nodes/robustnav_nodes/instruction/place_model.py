@@ -121,9 +121,12 @@ def said_at(tokens: Sequence[str], mentions: Sequence[Mention]) -> Float64:
 
 
 def learn_places(
-    scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: int, rounds: int = 3, epochs: int = 40
+    scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: int, epochs: Sequence[int] = (10, 10, 60)
 ) -> PlaceModel:
-    """Expectation and maximisation: place the mentions, learn what is said there, place them anew."""
+    """Expectation and maximisation: place the mentions, learn what is said there, place them anew.
+
+    `epochs` has one number for each round: only the last network has to be a good one.
+    """
     features = [place_features(scene) for scene in scenes]
     first = np.concatenate([[0], np.cumsum([len(scene) for scene in scenes])])
     rows = np.concatenate(features)
@@ -133,7 +136,7 @@ def learn_places(
     climb_bins = [climb_bins_of(scene) for scene in scenes]
     model: PlaceModel | None = None
     concepts = len(CONCEPTS) - FIRST_OBJECT
-    for number in range(rounds):
+    for number, epochs_of_round in enumerate(epochs):
         counts = np.zeros((len(rows), concepts))
         turns = np.full((PHRASES, len(TURN_EDGES) + 1), 2.0)
         climbs = np.full(len(CLIMB_EDGES_M) + 1, 2.0)
@@ -158,7 +161,7 @@ def learn_places(
                 elif concept in (UP, DOWN):
                     bins = climb_bins[one.walk]
                     np.add.at(climbs, bins if concept == UP else len(CLIMB_EDGES_M) - bins, placed[m])
-        hidden, out = _fit_network(x, counts, seed + number, epochs)
+        hidden, out = _fit_network(x, counts, seed + number, epochs_of_round)
         share = counts.sum(axis=0) + 1.0
         model = PlaceModel(
             mean=mean,
