@@ -60,7 +60,7 @@ def test_a_walk_without_viewpoints_is_one_row_of_zeros(folder: Path) -> None:
 
 
 def test_iedl_learns_from_its_vectors(folder: Path) -> None:
-    """The network takes any encoder's vectors, of any width, and gives a score and as many places as words."""
+    """The network takes any encoder's vectors, and gives a score and as many places as words."""
     from robustnav_nodes.instruction.clip_encoder import ClipEncoder
     from robustnav_nodes.instruction.iedl import Iedl, IedlShape
     from robustnav_nodes.instruction.iedl_model import IedlModel

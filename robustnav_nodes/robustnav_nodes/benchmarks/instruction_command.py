@@ -63,15 +63,15 @@ def instruction_command(
     console = Console(highlight=False)
     learned = load_model(model or SHIPPED)
     wanted = None if models is None else [name.strip() for name in models.split(",")]
+    asked = {name: contestants_of(learned, name, seed, wanted) for name in _protocols(protocol)}
     began = time.monotonic()
     console.print("[dim]reading the walks and what was said[/]")
-    found = bench_episodes(data, suite, _protocols(protocol), episodes, seed)
+    found = bench_episodes(data, suite, tuple(asked), episodes, seed)
     rows: list[InstructionRow] = []
     pairs: list[PairRow] = []
     calibrations: list[Calibration] = []
     columns = (TextColumn("judging"), BarColumn(), MofNCompleteColumn(), TextColumn("episodes"))
     with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as progress:
-        asked = {name: contestants_of(learned, name, seed, wanted) for name in found}
         total = sum(len(part) * len(asked[name]) for name, parts in found.items() for part in parts.values())
         task = progress.add_task("", total=total)
         for name, parts in found.items():

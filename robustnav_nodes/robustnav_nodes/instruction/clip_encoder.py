@@ -1,4 +1,4 @@
-"""The thesis' panoramic encoder: pictures around each viewpoint through CLIP (ViT-B/16), from a local folder."""
+"""The thesis' panoramic encoder: pictures around each viewpoint through CLIP (ViT-B/16), from a folder."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from pickle import UnpicklingError
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 Say = Callable[[str], None]
 _RATE, _WEIGHT_DECAY, _GRADIENT_MAX = 3e-4, 0.01, 1.0
-_WARM_UP_STEPS = 200
+_WARM_UP_STEPS = 50
 _JUDGED_AT_MOST = 3000  # episodes after each epoch
 
 
@@ -237,9 +238,10 @@ class IedlTraining:
             self._optimiser.load_state_dict(state["optimiser"])
             self._best, self._steps = state["best"], int(state["steps"])
             self.curve = [EpochFigures(**row) for row in state["curve"]]
-        except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
+        except (OSError, EOFError, UnpicklingError, KeyError, RuntimeError, TypeError, ValueError) as error:
             raise BadFileError(
-                f"the checkpoint {str(self._checkpoint)!r} cannot be taken up ({error}): remove it"
+                f"the checkpoint {str(self._checkpoint)!r} cannot be taken up ({type(error).__name__}): "
+                "remove it, and train from the start"
             ) from error
 
 
