@@ -19,7 +19,7 @@ def test_what_was_never_written_is_more_surprising() -> None:
 
 
 def test_bits_are_those_of_interpolated_trigrams() -> None:
-    """`b` after `a a`: alone (1 + 1) / (4 + 4), with the end counted; of pairs 1/2; of triples none is kept."""
+    """`b` after `a a`: alone (1 + 1) / (4 + 4), the end counted; of pairs 1/2; of triples none is kept."""
     model = learn_surprise([("a", "a", "b")])
     alone, pair = (1 + 1) / (4 + 4), 1 / 2
     assert model.bits(("a", "a", "b"))[2] == pytest.approx(-math.log2(0.15 * alone + 0.3 * pair))
