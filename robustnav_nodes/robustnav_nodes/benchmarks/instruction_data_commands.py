@@ -1,5 +1,6 @@
-"""`robustnav data instructions`: packs of instructions to learn from, as large as is wanted."""
+"""`robustnav data instructions` and `statistics`: packs to learn from, and what is in them."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -36,3 +37,56 @@ def instructions_command(
         counts = write_generated_pack(plan, out, workers, lambda done: progress.update(task, advance=done))
     say = Console(highlight=False, soft_wrap=True).print
     say(f"{out}: {', '.join(f'{count} {what}' for what, count in counts.items())}", markup=False)
+
+
+def statistics_command(
+    pack: Annotated[Path, typer.Argument(metavar="PACK", help="folder of a pack, ours or of real walks")],
+    split: Annotated[list[str] | None, typer.Option(help="only this one; can be repeated")] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="write the figures to this file too")
+    ] = None,
+) -> None:
+    """Count a pack's episodes with errors, beside table 4.1 of the thesis (other data)."""
+    from rich.table import Table
+
+    from robustnav_nodes.benchmarks.instruction_statistics import THESIS, pack_statistics
+    from robustnav_nodes.benchmarks.report_file import check_writable, write_report
+
+    check_writable(json_file)
+    rows = list(pack_statistics(pack, split or []))
+    table = Table(title=f"Instruction errors of {pack}; in brackets the thesis' table 4.1, on other data")
+    for column in ("protocol", "split", "type"):
+        table.add_column(column)
+    for column in ("episodes", "errors each", "mean tokens", "direction", "object", "room"):
+        table.add_column(column, justify="right")
+    for row in rows:
+        found, thesis = row.statistics, THESIS[row.statistics.error_type]
+        kinds = dict(found.kinds)
+        table.add_row(
+            row.protocol,
+            row.split,
+            found.error_type,
+            f"{found.episodes} ({thesis.episodes})",
+            f"{found.errors_per_episode:.0f} ({thesis.errors_per_episode:.0f})",
+            f"{found.mean_tokens:.1f} ({thesis.mean_tokens:.1f})",
+            *(str(kinds[kind]) for kind in ("direction", "object", "room")),
+        )
+    Console(highlight=False).print(table)
+    if json_file is not None:
+        write_report(
+            json_file,
+            "instruction-statistics",
+            rows=[
+                {
+                    "protocol": row.protocol,
+                    "split": row.split,
+                    "type": row.statistics.error_type,
+                    "episodes": row.statistics.episodes,
+                    "errors_per_episode": row.statistics.errors_per_episode,
+                    "mean_tokens": row.statistics.mean_tokens,
+                    "kinds": dict(row.statistics.kinds),
+                    "thesis": asdict(THESIS[row.statistics.error_type]),
+                }
+                for row in rows
+            ],
+        )

@@ -31,12 +31,14 @@ def crossing_facts(around: Surroundings) -> Iterator[Fact]:
         yield from _counted(around, crossing, came_by)
         yield from _outermost(around, crossing, came_by)
     for entering, leaving in pairwise(walk.crossings):
-        if leaving.at_m - entering.at_m >= _THROUGH_M:
+        first, last = entering.after + 1, leaving.after
+        is_inside = first <= last and set(walk.rooms[first : last + 1]) == {entering.entered}
+        if is_inside and leaving.at_m - entering.at_m >= _THROUGH_M:
             yield Fact(
                 kind=Kind.THROUGH,
                 event=f"through {entering.at_m:.2f}",
-                first=entering.after + 1,
-                last=max(leaving.after, entering.after + 1),
+                first=first,
+                last=last,
                 at_m=entering.at_m + 0.1,
                 rooms=(entering.entered,),
             )
