@@ -115,6 +115,7 @@ def test_the_other_directions_agree_too(clauses: list[tuple[ToldWalk, Clause]]) 
     for told, clause in clauses:
         said = {mention.concept for mention in mentions(clause, DIRECTION)}
         walk, first = told.walk, clause.fact.first
+        assert not said & {"up", "down"}, clause.text
         if "backward" in said or "back" in said:
             assert abs(walk.turn_rad(0)) > math.radians(135.0), clause.text
         if clause.fact.kind is Kind.START_FORWARD:
