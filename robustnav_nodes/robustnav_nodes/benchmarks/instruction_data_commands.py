@@ -1,4 +1,4 @@
-"""`robustnav data instructions` and `statistics`: packs to learn from, and what is in them."""
+"""`robustnav data instructions`, `r2r` and `statistics`: packs to learn from, and what is in them."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -37,6 +37,34 @@ def instructions_command(
         counts = write_generated_pack(plan, out, workers, lambda done: progress.update(task, advance=done))
     say = Console(highlight=False, soft_wrap=True).print
     say(f"{out}: {', '.join(f'{count} {what}' for what, count in counts.items())}", markup=False)
+
+
+def r2r_command(
+    out: Annotated[Path, typer.Option(help="folder to write the pack into; must not hold one")],
+    fine_grained_r2r: Annotated[Path, typer.Option(help="copy of YicongHong/Fine-Grained-R2R")],
+    matterport_sim: Annotated[Path, typer.Option(help="copy of peteanderson80/Matterport3DSimulator")],
+    reverie: Annotated[Path, typer.Option(help="copy of YuankaiQi/REVERIE")],
+    matterport: Annotated[Path, typer.Option(help="copy of niessner/Matterport")],
+    split: Annotated[list[str] | None, typer.Option(help="can be repeated; default: all three")] = None,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="decides the errors")] = 1,
+) -> None:
+    """Build the semantic R2R pack of people's instructions from local copies of public repositories."""
+    from robustnav_nodes.benchmarks.r2r_building import build_r2r_pack
+    from robustnav_nodes.benchmarks.r2r_sources import SourceFolders
+
+    folders = SourceFolders(
+        fine_grained=fine_grained_r2r, simulator=matterport_sim, reverie=reverie, matterport=matterport
+    )
+    console = Console(highlight=False, soft_wrap=True)
+    with console.status("") as status:
+        counts = build_r2r_pack(
+            folders,
+            out,
+            split or ["train", "val_seen", "val_unseen"],
+            seed,
+            lambda scan: status.update(f"scan {scan}"),
+        )
+    console.print(f"{out}: {', '.join(f'{count} {what}' for what, count in counts.items())}", markup=False)
 
 
 def statistics_command(
