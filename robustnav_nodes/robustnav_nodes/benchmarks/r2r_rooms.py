@@ -1,5 +1,6 @@
 """Which room a viewpoint is in, told by the names of the objects near it, never by labels of its own scan."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -22,7 +23,6 @@ def out_of_fold_evidence(
     """
     try:
         from sklearn.feature_extraction import DictVectorizer
-        from sklearn.feature_selection import VarianceThreshold
         from sklearn.linear_model import LogisticRegression
         from sklearn.model_selection import GroupKFold
     except ImportError as error:
@@ -32,9 +32,11 @@ def out_of_fold_evidence(
 
     names = sorted(viewpoints)
     groups = np.array([viewpoints[name][0] for name in names])
-    count = max(1, len(names))
-    vectors = DictVectorizer(sparse=True).fit_transform([_words(viewpoints[name][1]) for name in names])
-    kept = VarianceThreshold(_AT_LEAST / count * (1.0 - _AT_LEAST / count)).fit_transform(vectors)
+    words = [_words(viewpoints[name][1]) for name in names]
+    often = Counter(word for said in words for word in said)
+    kept = DictVectorizer(sparse=True).fit_transform(
+        [{word: 1.0 for word in said if often[word] >= _AT_LEAST} for said in words]
+    )
     known = np.array([labels.get(name, "") for name in names])
     scans = sorted({group for group, label in zip(groups, known, strict=True) if label})
     if len(scans) < 2:
@@ -42,14 +44,16 @@ def out_of_fold_evidence(
     found = np.zeros((len(names), len(ROOM_TYPES)))
     for train, test in GroupKFold(min(FOLDS, len(set(groups)))).split(kept, groups=groups):
         labelled = train[known[train] != ""]
+        if len(set(known[labelled])) < 2:  # nothing to tell apart
+            found[test] = 1.0 / len(ROOM_TYPES)
+            continue
         model = LogisticRegression(max_iter=500).fit(kept[labelled], known[labelled])
         columns = [ROOM_TYPES.index(room) for room in model.classes_]
         found[np.ix_(test, columns)] = model.predict_proba(kept[test])
     return {name: [round(float(p), 3) for p in row] for name, row in zip(names, found, strict=True)}
 
 
-def _words(objects: Sequence[str]) -> dict[str, float]:
-    """Whole names and their words, each at most once, and that there was anything at all."""
-    words = {f"name {name}": 1.0 for name in objects}
-    words |= {word: 1.0 for name in objects for word in name.split()}
-    return words | {"anything": float(bool(objects))}
+def _words(objects: Sequence[str]) -> set[str]:
+    """Whole names and their words, and that there was anything at all."""
+    words = {f"name {name}" for name in objects} | {word for name in objects for word in name.split()}
+    return words | {"anything"} if objects else {"nothing"}

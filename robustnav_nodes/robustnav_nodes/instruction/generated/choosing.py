@@ -110,9 +110,9 @@ def _is_named_already(fact: Fact, named: set[int]) -> bool:
 
 def _one_way(ways: list[Fact], writer: Writer, common: Mapping[str, int], rng: np.random.Generator) -> Fact:
     salience = [_salience(fact.things, common) for fact in ways]
-    of_kind: Counter[Kind] = Counter()
+    of_kind: defaultdict[Kind, float] = defaultdict(float)
     for fact, value in zip(ways, salience, strict=True):
-        of_kind[fact.kind] += value  # type: ignore[assignment]
+        of_kind[fact.kind] += value
     weights = np.array(
         [
             value

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def crossing_facts(around: Surroundings) -> Iterator[Fact]:
             )
 
 
-def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: object) -> Fact:
+def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: Any) -> Fact:
     first = crossing.after if at is None else at
     return Fact(
         kind=kind,
@@ -54,7 +55,7 @@ def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: object)
         at_m=crossing.at_m,
         things=(crossing.door,),
         rooms=(crossing.left, crossing.entered),
-        **more,  # type: ignore[arg-type]
+        **more,
     )
 
 
