@@ -10,7 +10,11 @@ from rich.console import Console
 from rich.markup import escape
 
 from robustnav_msgs_py.errors import BadParameterError
-from robustnav_nodes.benchmarks.instruction_data_commands import instructions_command
+from robustnav_nodes.benchmarks.instruction_data_commands import (
+    instructions_command,
+    r2r_command,
+    statistics_command,
+)
 
 if TYPE_CHECKING:  # loads numba, which no other command should wait for
     from robustnav_nodes.benchmarks.search_scene import SearchScene
@@ -22,6 +26,8 @@ data_app.add_typer(import_app, name="import")
 data_app.add_typer(export_app, name="export")
 
 data_app.command("instructions")(instructions_command)
+data_app.command("r2r")(r2r_command)
+data_app.command("statistics")(statistics_command)
 
 _NAMED = 4  # targets named in a summary
 MAX_SEED = 2**31 - 1

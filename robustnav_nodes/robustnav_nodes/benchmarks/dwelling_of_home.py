@@ -42,13 +42,15 @@ _SAID_COLOURS = frozenset(
 )
 _MAT_HEIGHT_M = 0.04
 _CAMERA_M = (1.1, 1.6)
-# A hallway with one of these is where one comes in.
-_ENTRANCE = frozenset({"shoe bench"})
+# A hallway with one of these may be where one comes in.
+_ENTRANCE, _P_ENTRANCE = frozenset({"shoe bench"}), 0.4
 
 
 def dwelling_of(home: "Home", rng: np.random.Generator) -> Dwelling:
     """The home as boxes with names; how high the camera is carried is drawn."""
-    entrances = {piece.room for piece in home.furniture if piece.kind in _ENTRANCE}
+    entrances = {
+        piece.room for piece in home.furniture if piece.kind in _ENTRANCE and rng.random() < _P_ENTRANCE
+    }
     rooms = tuple(
         Room(
             name=room.name,

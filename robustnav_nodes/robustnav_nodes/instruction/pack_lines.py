@@ -71,6 +71,22 @@ class Row:
             raise self.wrong(name, value, "an object of lists of texts")
         return {key: tuple(words) for key, words in value.items()}
 
+    def has(self, name: str) -> bool:
+        return name in self._fields
+
+    def flag(self, name: str) -> bool:
+        value = self._get(name)
+        if not isinstance(value, bool):
+            raise self.wrong(name, value, "true or false")
+        return value
+
+    def objects(self, name: str) -> dict[str, "Row"]:
+        """The objects in a field that is an object of objects, by their names."""
+        value = self._get(name)
+        if not isinstance(value, dict):
+            raise self.wrong(name, value, "an object of objects")
+        return {key: Row(item, f"{self.where}, {name}[{key!r}],") for key, item in value.items()}
+
     def wrong(self, name: str, value: object, wanted: str) -> BadFileError:
         """The error to raise where field `name` is `value`."""
         return BadFileError(f"{self.where} holds {name!r} = {str(value)[:60]!r}; it must be {wanted}")

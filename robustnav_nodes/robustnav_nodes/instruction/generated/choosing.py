@@ -22,10 +22,10 @@ _WEIGHT: Mapping[Kind, float] = MappingProxyType(
         Kind.START_FACING: 0.4,
         Kind.START_BESIDE: 0.5,
         Kind.START_BACK: 2.0,
-        Kind.START_BACKWARD: 2.0,
+        Kind.START_BACKWARD: 5.0,
         Kind.TURN_AT: 0.5,
         Kind.TURN_TOWARDS: 0.5,
-        Kind.AROUND: 0.8,
+        Kind.AROUND: 3.0,
         Kind.CROSS_COUNTED: 1.2,
         Kind.CROSS_OUTERMOST: 0.45,
         Kind.PASS_BETWEEN: 0.4,
@@ -42,7 +42,7 @@ _WEIGHT: Mapping[Kind, float] = MappingProxyType(
     }
 )
 _PREFERRED = 2.5
-_DOOR_WEIGHT, _NAMELESS_WEIGHT = 0.2, 0.15
+_DOOR_WEIGHT, _NAMELESS_WEIGHT = 0.06, 0.15
 # Topics in the order in which they claim events: a door that is turned through takes the turn with it.
 _ORDER = (Topic.STOP, Topic.CROSSING, Topic.START, Topic.TURN, Topic.LEG, Topic.PASSING)
 # What is left out first where too much is said, and brought back first where too little is.
@@ -110,9 +110,9 @@ def _is_named_already(fact: Fact, named: set[int]) -> bool:
 
 def _one_way(ways: list[Fact], writer: Writer, common: Mapping[str, int], rng: np.random.Generator) -> Fact:
     salience = [_salience(fact.things, common) for fact in ways]
-    of_kind: Counter[Kind] = Counter()
+    of_kind: defaultdict[Kind, float] = defaultdict(float)
     for fact, value in zip(ways, salience, strict=True):
-        of_kind[fact.kind] += value  # type: ignore[assignment]
+        of_kind[fact.kind] += value
     weights = np.array(
         [
             value

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -31,18 +32,20 @@ def crossing_facts(around: Surroundings) -> Iterator[Fact]:
         yield from _counted(around, crossing, came_by)
         yield from _outermost(around, crossing, came_by)
     for entering, leaving in pairwise(walk.crossings):
-        if leaving.at_m - entering.at_m >= _THROUGH_M:
+        first, last = entering.after + 1, leaving.after
+        is_inside = first <= last and set(walk.rooms[first : last + 1]) == {entering.entered}
+        if is_inside and leaving.at_m - entering.at_m >= _THROUGH_M:
             yield Fact(
                 kind=Kind.THROUGH,
                 event=f"through {entering.at_m:.2f}",
-                first=entering.after + 1,
-                last=max(leaving.after, entering.after + 1),
+                first=first,
+                last=last,
                 at_m=entering.at_m + 0.1,
                 rooms=(entering.entered,),
             )
 
 
-def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: object) -> Fact:
+def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: Any) -> Fact:
     first = crossing.after if at is None else at
     return Fact(
         kind=kind,
@@ -52,7 +55,7 @@ def _fact(crossing: Crossing, kind: Kind, at: int | None = None, **more: object)
         at_m=crossing.at_m,
         things=(crossing.door,),
         rooms=(crossing.left, crossing.entered),
-        **more,  # type: ignore[arg-type]
+        **more,
     )
 
 

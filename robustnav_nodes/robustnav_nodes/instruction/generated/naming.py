@@ -23,7 +23,7 @@ SAID: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "console table": ("table",),
         "desk": ("desk",),
         "bed": ("bed",),
-        "nightstand": ("nightstand", "nightstand", "night stand", "bedside table"),
+        "nightstand": ("nightstand", "nightstand", "night stand"),
         "dresser": ("dresser",),
         "wardrobe": ("dresser", "wardrobe", "wardrobe", "armoire"),
         "cabinet": ("cabinet", "cabinet", "cupboard"),

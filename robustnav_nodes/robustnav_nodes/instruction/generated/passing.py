@@ -15,7 +15,7 @@ _AHEAD_RAD = math.radians(14.0)
 _NEARER_M = 0.8
 _REACHED_M = 1.0
 _STRAIGHT_RAD, _STRAIGHT_M = math.radians(22.0), 2.4
-_AROUND_RAD, _AROUND_M = math.radians(60.0), 0.9
+_AROUND_RAD, _AROUND_M = math.radians(50.0), 1.1
 _INNER_RAD = math.radians(25.0)
 _WALKED_AROUND = frozenset(
     {

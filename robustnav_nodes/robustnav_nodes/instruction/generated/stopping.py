@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from robustnav_nodes.instruction.generated.dwelling import DOOR, Thing
 from robustnav_nodes.instruction.generated.facts import LEFT, RIGHT, Fact, Kind, Surroundings, side_of
@@ -22,8 +23,8 @@ def stop_facts(around: Surroundings) -> Iterator[Fact]:
     end, yaw = len(walk) - 1, walk.yaw_out_rad[-1]
     in_door = any(walk.away_m(end, door) <= _IN_DOOR_M for door in around.dwelling.doors)
 
-    def fact(kind: Kind, first: int = end, **more: object) -> Fact:
-        return Fact(kind=kind, event="stop", first=first, last=end, at_m=walk.length_m, **more)  # type: ignore[arg-type]
+    def fact(kind: Kind, first: int = end, **more: Any) -> Fact:
+        return Fact(kind=kind, event="stop", first=first, last=end, at_m=walk.length_m, **more)
 
     if in_door:
         door = min(around.dwelling.doors, key=lambda door: walk.away_m(end, door))

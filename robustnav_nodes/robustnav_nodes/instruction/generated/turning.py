@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from robustnav_nodes.instruction.generated.facts import Fact, Kind, Surroundings, side_of
 from robustnav_nodes.instruction.trajectory import wrapped
@@ -23,8 +24,8 @@ def start_facts(around: Surroundings) -> Iterator[Fact]:
     turned = walk.turn_rad(0)
     yaw_in, yaw_out = walk.yaw_in_rad[0], walk.yaw_out_rad[0]
 
-    def fact(kind: Kind, **more: object) -> Fact:
-        return Fact(kind=kind, event=START, first=0, last=1, at_m=0.0, **more)  # type: ignore[arg-type]
+    def fact(kind: Kind, **more: Any) -> Fact:
+        return Fact(kind=kind, event=START, first=0, last=1, at_m=0.0, **more)
 
     near = [thing for thing in around.things(0) if walk.away_m(0, thing) <= _FAR_M]
     ahead = [t for t in near if abs(walk.bearing_rad(0, t, yaw_in)) <= _AHEAD_RAD and t.joins is None]
@@ -94,7 +95,7 @@ def _one_turn(around: Surroundings, first: int, last: int, turned: float) -> Ite
         else Kind.TURN
     )
 
-    def fact(kind: Kind, **more: object) -> Fact:
+    def fact(kind: Kind, **more: Any) -> Fact:
         return Fact(
             kind=kind,
             event=turn_event(first),
@@ -102,7 +103,7 @@ def _one_turn(around: Surroundings, first: int, last: int, turned: float) -> Ite
             last=last,
             at_m=walk.so_far_m[first],
             side=side,
-            **more,  # type: ignore[arg-type]
+            **more,
         )
 
     yield fact(kind)

@@ -82,7 +82,7 @@ WRITERS = (
         drops_articles=True,
         spelling=((Spelling.PROPER, 0.9), (Spelling.LOWER, 0.1)),
     ),
-    Writer(name="plain", p=_p(0.4, 0.7, 0.75, 0.15, 0.2), clauses=(2, 4), p_sentence=0.45),
+    Writer(name="plain", p=_p(0.4, 0.7, 0.75, 0.15, 0.3), clauses=(2, 4), p_sentence=0.45),
     Writer(
         name="turner",
         p=_p(0.8, 0.95, 0.6, 0.15, 0.1),
@@ -102,7 +102,7 @@ WRITERS = (
     ),
     Writer(
         name="chatty",
-        p=_p(0.55, 0.75, 0.75, 0.2, 0.2),
+        p=_p(0.55, 0.75, 0.75, 0.2, 0.3),
         clauses=(3, 5),
         wordy=1,
         p_sentence=0.6,
@@ -129,7 +129,7 @@ WRITERS = (
     ),
     Writer(
         name="hurried",
-        p=_p(0.3, 0.7, 0.75, 0.15, 0.2),
+        p=_p(0.3, 0.7, 0.75, 0.15, 0.3),
         clauses=(2, 4),
         wordy=-1,
         p_sentence=0.2,
@@ -138,7 +138,7 @@ WRITERS = (
     ),
     Writer(
         name="formal",
-        p=_p(0.55, 0.8, 0.8, 0.2, 0.15),
+        p=_p(0.55, 0.8, 0.8, 0.2, 0.25),
         clauses=(2, 4),
         wordy=1,
         p_sentence=0.7,
