@@ -3,6 +3,8 @@
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
+from itertools import chain
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -69,13 +71,20 @@ def survey_home(plan: GenerationPlan, home: int) -> Survey | None:
     return survey(dwelling, seed, plan.splits_of(home), plan.writers, seed)
 
 
-def generated_instructions(plan: GenerationPlan, split: str) -> Iterator[Instruction]:
-    """The instructions of one split, home by home, without files between."""
-    for home in range(plan.homes + plan.unseen):
-        if plan.splits_of(home).get(split):
-            surveyed = survey_home(plan, home)
-            if surveyed is not None:
-                yield from instructions_of(surveyed, split)
+def generated_instructions(plan: GenerationPlan, split: str, workers: int) -> Iterator[Instruction]:
+    """The instructions of one split, home by home, without files between; in so many processes."""
+    homes = [home for home in range(plan.homes + plan.unseen) if plan.splits_of(home).get(split)]
+    instructions_at = partial(_instructions_at, plan, split)
+    if workers == 1:
+        yield from chain.from_iterable(map(instructions_at, homes))
+        return
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        yield from chain.from_iterable(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB))
+
+
+def _instructions_at(plan: GenerationPlan, split: str, home: int) -> list[Instruction]:
+    surveyed = survey_home(plan, home)
+    return [] if surveyed is None else list(instructions_of(surveyed, split))
 
 
 def write_generated_pack(

@@ -1,5 +1,6 @@
 """What models of instruction errors learn from and are judged on: a pack, or homes made for it."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,7 @@ from robustnav_nodes.instruction.wording import learn_wording
 
 # Homes of seeds from here on are not trained on (`robustnav train iedl` begins at its --seed).
 UNSEEN_SEED = 500_000
-BENCH_HOMES = 60
+BENCH_HOMES = 40
 
 Episodes = dict[Protocol, dict[str, list[ErrorEpisode]]]
 
@@ -52,7 +53,7 @@ def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
             f"homes from seed {UNSEEN_SEED} on are kept for judging; --seed {seed} with --homes {homes} "
             "would learn from them"
         )
-    instructions = list(generated_instructions(plan, TRAIN))
+    instructions = list(generated_instructions(plan, TRAIN, _workers()))
     return Lessons(
         instructions=instructions,
         common_sense=derive_common_sense(instructions),
@@ -79,7 +80,7 @@ def bench_episodes(
             found[protocol] = _put_in(instructions, pack.common_sense(), protocol, seed)
     else:
         plan = GenerationPlan(seed=UNSEEN_SEED + seed, homes=0, unseen=BENCH_HOMES)
-        instructions = list(generated_instructions(plan, VAL_UNSEEN))
+        instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
         common_sense = derive_common_sense(instructions)
         for protocol in protocols:
             found[protocol] = _put_in(instructions, common_sense, protocol, seed)
@@ -87,6 +88,10 @@ def bench_episodes(
         protocol: {name: chosen_pairs(part, at_most, seed) for name, part in by_type.items()}
         for protocol, by_type in found.items()
     }
+
+
+def _workers() -> int:
+    return len(os.sched_getaffinity(0))
 
 
 def _put_in(
