@@ -82,11 +82,11 @@ def statistics_command(
 
     check_writable(json_file)
     rows = list(pack_statistics(pack, split or []))
-    table = Table(title=f"Instruction errors of {pack}; in brackets the thesis' table 4.1, on other data")
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for column in ("protocol", "split", "type"):
-        table.add_column(column)
-    for column in ("episodes", "errors each", "mean tokens", "direction", "object", "room"):
-        table.add_column(column, justify="right")
+        table.add_column(column, no_wrap=True)
+    for column in ("episodes", "tokens", "dir./obj./room"):
+        table.add_column(column, justify="right", no_wrap=True)
     for row in rows:
         found, thesis = row.statistics, THESIS[row.statistics.error_type]
         kinds = dict(found.kinds)
@@ -95,11 +95,12 @@ def statistics_command(
             row.split,
             found.error_type,
             f"{found.episodes} ({thesis.episodes})",
-            f"{found.errors_per_episode:.0f} ({thesis.errors_per_episode:.0f})",
             f"{found.mean_tokens:.1f} ({thesis.mean_tokens:.1f})",
-            *(str(kinds[kind]) for kind in ("direction", "object", "room")),
+            "/".join(str(kinds[kind]) for kind in ("direction", "object", "room")),
         )
-    Console(highlight=False).print(table)
+    console = Console(highlight=False)
+    console.print(table)
+    console.print("[dim]in brackets: the thesis' table 4.1, on other data[/]")
     if json_file is not None:
         write_report(
             json_file,
