@@ -33,6 +33,7 @@ def test_a_sample_is_small_whole_and_of_a_clean_checkout(sample: Path) -> None:
         assert bag.manifest is not None
         assert bag.manifest.lockstep
         assert not bag.manifest.uncommitted_changes
+        assert "/detection back_end=truth" in bag.manifest.back_ends_text
 
 
 def test_rosbags_and_mcap_read_every_message_of_a_sample() -> None:
