@@ -22,7 +22,7 @@ MOST_BYTES = 4_000_000
 def robustnav(*arguments: str) -> subprocess.CompletedProcess[str]:
     """The command, in a process of its own."""
     command = [sys.executable, "-m", "robustnav_nodes", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 
 @pytest.mark.parametrize("sample", sorted(path.parent for path in SAMPLES.glob("*/metadata.yaml")), ids=str)
