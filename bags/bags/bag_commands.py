@@ -3,6 +3,7 @@
 Needs no ROS. What a command stands on is imported in it: `robustnav --help` waits for none of it.
 """
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,13 +14,14 @@ from rich.console import Console
 from rich.markup import escape
 
 from bags.redaction_choices import Chat, Images
-from robustnav_msgs_py.errors import BadFileError, RobustnavError
+from robustnav_msgs_py.errors import BadFileError, GraphError, RobustnavError
 
 if TYPE_CHECKING:
     from bags.metrics_table import MetricsRow
 
 bag_app = typer.Typer(help="Look into recorded runs, measure, repair and share them.", no_args_is_help=True)
 
+PIPE_WIDTH = 160
 BagPath = Annotated[Path, typer.Argument(metavar="BAG", help="folder of a bag, or an .mcap file")]
 
 
@@ -151,7 +153,8 @@ def _disk_failures(path: Path) -> Iterator[None]:
 
 
 def _console() -> Console:
-    return Console(highlight=False)
+    """As wide as the terminal; wide enough for every table where another program reads."""
+    return Console(highlight=False, width=None if sys.stdout.isatty() else PIPE_WIDTH)
 
 
 def _say(line: str) -> None:
@@ -161,9 +164,14 @@ def _say(line: str) -> None:
 def _replay(path: Path, nodes: tuple[str, ...], params: Path | None) -> bool:
     """Replay and show what came of it; whether all was the same."""
     from bags.reader import open_bag
-    from bags.replay import replay
-    from bags.replay_table import render
 
+    try:
+        from bags.replay import replay
+        from bags.replay_table import render
+    except ModuleNotFoundError as error:
+        raise GraphError(
+            f"the nodes need ROS 2, which is not here ({error}): source it, or pip install 'robustnav[ros]'"
+        ) from error
     with open_bag(path) as opened:
         result = replay(opened, nodes=nodes, parameter_file=params)
         span = opened.span_ns

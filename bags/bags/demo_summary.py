@@ -37,7 +37,9 @@ def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs:
     )
     table.add_row("SPL", _number(metrics.spl))
     table.add_row("false alarms survived", str(metrics.false_alarms))
-    table.add_row("time", f"{end.wall_s:.0f} s, of the search {metrics.wall_duration_s:.0f} s")
+    searched_s = metrics.wall_duration_s
+    of_these = "" if searched_s is None else f", of the search {searched_s:.0f} s"
+    table.add_row("time", f"{end.wall_s:.0f} s{of_these}")
     if end.restarts:
         table.add_row("processes brought back", str(end.restarts))
     table.add_row("bag", str(bag))

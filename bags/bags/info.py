@@ -82,7 +82,7 @@ def render(info: BagInfo) -> RenderableType:
     facts.add_column(overflow="fold")
     for name, text in _facts(info):
         facts.add_row(name, escape(text))
-    topics = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    topics = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
     topics.add_column("topic", overflow="fold")
     topics.add_column("type", overflow="fold")
     topics.add_column("count", justify="right", no_wrap=True)
@@ -124,12 +124,23 @@ def _facts(info: BagInfo) -> list[tuple[str, str]]:
     compression = f", {info.compression}" if info.compression else ""
     facts.append(("size", f"{_size(info.size_bytes)} (mcap{compression})"))
     if info.start_ns is not None:
-        begun = datetime.fromtimestamp(info.start_ns / NS_PER_S).astimezone()
-        facts.append(("start", begun.strftime("%Y-%m-%d %H:%M:%S.%f %z")))
+        facts.append(("start", _start(info.start_ns, info.manifest)))
     facts.append(("duration", f"{info.duration_s:.1f} s"))
     facts.append(("messages", f"{info.message_count} on {len(info.topics)} topics"))
     facts.append(("closed properly", "yes" if not info.cut else f"no: {info.cut}"))
     return facts + (_manifest_facts(info.manifest) if info.manifest else [("manifest", "none")])
+
+
+def _start(start_ns: int, manifest: Manifest | None) -> str:
+    """Of the wall clock; a run in lock-step has a clock of its own, and was recorded at some other time."""
+    if manifest is not None and manifest.lockstep:
+        recorded = _moment(manifest.wall_start_ns, "%Y-%m-%d %H:%M:%S %z")
+        return f"{start_ns / NS_PER_S:.3f} s of the run's own clock (lock-step, recorded {recorded})"
+    return _moment(start_ns, "%Y-%m-%d %H:%M:%S.%f %z")
+
+
+def _moment(time_ns: int, form: str) -> str:
+    return datetime.fromtimestamp(time_ns / NS_PER_S).astimezone().strftime(form)
 
 
 def _manifest_facts(manifest: Manifest) -> list[tuple[str, str]]:
@@ -141,10 +152,10 @@ def _manifest_facts(manifest: Manifest) -> list[tuple[str, str]]:
         facts.append(("seed", str(manifest.seed)))
     if manifest.scene:
         facts.append(("scene", manifest.scene))
+    if manifest.sim_start_ns is not None:
+        facts.append(("simulated from", f"{manifest.sim_start_ns / NS_PER_S:.3f} s"))
     if manifest.back_ends:
-        facts.append(
-            ("back ends", ", ".join(f"{row.node} {row.parameter}={row.choice}" for row in manifest.back_ends))
-        )
+        facts.append(("back ends", manifest.back_ends_text))
     if manifest.nodes:
         facts.append(("parameters of", ", ".join(node.node for node in manifest.nodes)))
     if manifest.redacted:

@@ -15,9 +15,9 @@ from bags.parameters import RecorderParameters
 from bags.provenance import manifest_of_this_run
 from bags.writer import BagWriter
 from robustnav_msgs_py.contract import Qos
-from robustnav_msgs_py.conversions import record_from_message
+from robustnav_msgs_py.conversions import clock_from_message, record_from_message
 from robustnav_msgs_py.records import Episode
-from robustnav_nodes.graph.lockstep import Said
+from robustnav_nodes.graph.lockstep import CLOCK, Said
 from robustnav_nodes.graph.lockstep_run import LockstepRun
 
 
@@ -44,8 +44,9 @@ class LockstepRecording:
             channel = self._writer.add_topic(said.topic, definition, (_offered(said.row.qos),))
             self._channels[said.topic] = channel
         if said.row.name == "truth/episode":
-            episode = record_from_message(said.message, Episode)
-            self._manifest = replace(self._manifest, seed=episode.seed, scene=episode.home)
+            self._manifest = self._manifest.with_episode(record_from_message(said.message, Episode))
+        if said.row.name == CLOCK and self._manifest.sim_start_ns is None:
+            self._manifest = replace(self._manifest, sim_start_ns=clock_from_message(said.message))
         self._writer.write(
             channel,
             log_time_ns=said.time_ns,

@@ -1,12 +1,15 @@
 """What made a run: version, commit, seed, scene, and every node's parameters; stored inside its bag."""
 
 import json
+import re
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
 
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.records import Episode
 
 FORMAT = 1
+BACK_END = re.compile(r"(^|[._])back_?end$")
 ParameterScalar = bool | int | float | str | None
 ParameterValue = ParameterScalar | tuple[ParameterScalar, ...]
 
@@ -71,16 +74,18 @@ class Manifest:
 
     @property
     def back_ends(self) -> tuple[BackEnd, ...]:
-        """What each node's parameters called `backend` or `..._backend` say."""
-        found = []
-        for node in self.nodes:
-            for parameter in node.parameters:
-                last_word = parameter.name.rpartition(".")[2]
-                if last_word == "backend" or last_word.endswith("_backend"):
-                    found.append(
-                        BackEnd(node=node.node, parameter=parameter.name, choice=str(parameter.value))
-                    )
-        return tuple(found)
+        """What each node's parameters called `back_end`, `..._back_end` or in one word `backend` say."""
+        return tuple(
+            BackEnd(node=node.node, parameter=parameter.name, choice=str(parameter.value))
+            for node in self.nodes
+            for parameter in node.parameters
+            if BACK_END.search(parameter.name)
+        )
+
+    @property
+    def back_ends_text(self) -> str:
+        """The back ends as a person reads them, "" for none."""
+        return ", ".join(f"{row.node} {row.parameter}={row.choice}" for row in self.back_ends)
 
     def with_node(self, node: NodeParameters) -> Self:
         """This manifest with `node` in place of what it held of that node."""
@@ -90,6 +95,11 @@ class Manifest:
             nodes=tuple(sorted((*others, node), key=lambda known: known.node)),
             silent_nodes=tuple(name for name in self.silent_nodes if name != node.node),
         )
+
+    def with_episode(self, episode: Episode) -> Self:
+        """This manifest with seed and scene of a simulated `episode`."""
+        rooms = f" ({', '.join(episode.rooms)})" if episode.rooms else ""
+        return replace(self, seed=episode.seed, scene=episode.home + rooms)
 
     def as_json(self) -> str:
         """One line of JSON that `manifest_from_json` reads back to an equal manifest."""

@@ -32,7 +32,7 @@ class SearchMetrics:
     shortest_path_m: float | None
     spl: float | None
     false_alarms: int | None
-    wall_duration_s: float
+    wall_duration_s: float | None
     sim_duration_s: float | None
 
 
@@ -69,7 +69,7 @@ def measure(run: SearchRun, settings: MetricsSettings) -> SearchMetrics:
         shortest_path_m=shortest_m,
         spl=spl(success, walked_m, shortest_m),
         false_alarms=_survived(run, settings),
-        wall_duration_s=(run.end_ns - run.begin_ns) / 1e9,
+        wall_duration_s=None if run.lockstep else (run.end_ns - run.begin_ns) / 1e9,
         sim_duration_s=_sim_duration_s(run),
     )
 

@@ -1,8 +1,10 @@
 """Metrics of many recorded searches: a row for each, the means with what they are taken over, and a table."""
 
 import math
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -36,6 +38,9 @@ NAMES: Mapping[str, str] = MappingProxyType(
         "wall_duration_s": "wall time s",
     }
 )
+
+
+COLUMNS = ("no.", "target", "success", "steps", "path", "shortest", "SPL", "alarms", "NQ", "time", "wall")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,26 +144,15 @@ def report_content(rows: Sequence[MetricsRow]) -> dict[str, Any]:
 
 def render(rows: Sequence[MetricsRow]) -> RenderableType:
     """The tables that a terminal shows."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
     table.add_column("bag", overflow="fold")
-    for name in (
-        "no.",
-        "target",
-        "success",
-        "steps",
-        "path",
-        "shortest",
-        "SPL",
-        "alarms",
-        "NQ",
-        "time",
-        "wall",
-    ):
-        table.add_column(name, justify="left" if name in ("target", "success") else "right")
+    for name in COLUMNS:
+        table.add_column(name, justify="left" if name in ("target", "success") else "right", no_wrap=True)
+    short = _without_common_folders([row.bag for row in rows])
     for row in rows:
         told = row.metrics
         table.add_row(
-            escape(f"{row.bag} {row.robot}".rstrip()),
+            escape(f"{short[row.bag]} {row.robot}".rstrip()),
             str(told.episode),
             escape(told.target) or UNKNOWN,
             {True: "yes", False: "no", None: UNKNOWN}[told.success],
@@ -183,6 +177,13 @@ def render(rows: Sequence[MetricsRow]) -> RenderableType:
         parts.append(Text(f"not told by these bags: {', '.join(NAMES[name] for name in untold)}"))
     parts.append(Text(f"not told by any bag yet: {', '.join(NOT_TOLD_YET)}"))
     return Group(*parts)
+
+
+def _without_common_folders(bags: Sequence[str]) -> Mapping[str, str]:
+    """Paths of bags by what tells them apart."""
+    absolute = {bag: Path(bag).absolute() for bag in bags}
+    common = os.path.commonpath([path.parent for path in absolute.values()])
+    return {bag: str(path.relative_to(common)) for bag, path in absolute.items()}
 
 
 def _means_table(found: Sequence[Mean]) -> Table:

@@ -44,7 +44,7 @@ class RecorderParameters:
         "begin each further file with what latched topics said last; played as one bag, it is said twice",
     )
     flush_period_s: float = parameter(
-        1.0, "a run that is killed loses at most this much", unit="s", low=0.1, high=60.0
+        0.5, "a run that is killed loses at most this much", unit="s", low=0.1, high=60.0
     )
     queue_size_bytes: int = parameter(
         134_217_728,

@@ -183,8 +183,7 @@ class Recorder(GraphNode[RecorderParameters]):
 
     def _take_episode(self, data: bytes) -> None:
         episode = record_from_message(deserialize_message(data, DiagnosticStatus), Episode)
-        rooms = f" ({', '.join(episode.rooms)})" if episode.rooms else ""
-        self._manifest = replace(self._manifest, seed=episode.seed, scene=episode.home + rooms)
+        self._manifest = self._manifest.with_episode(episode)
 
     def _show_figures(self) -> None:
         self._tell_repairs()

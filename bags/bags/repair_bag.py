@@ -4,7 +4,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bags.bag_metadata import FILE_NAME, BagMetadata, joined, read_metadata
@@ -66,7 +66,8 @@ def repair_bag(path: Path, out: Path | None = None) -> BagRepair:
     except BaseException:
         shutil.rmtree(staged, ignore_errors=True)
         raise
-    return BagRepair(path=out, files=_moved(done.files, out), metadata_renewed=done.metadata_renewed)
+    moved = tuple(replace(report, path=out / report.path.name) for report in done.files)
+    return BagRepair(path=out, files=moved, metadata_renewed=done.metadata_renewed)
 
 
 def bag_files(folder: Path) -> list[Path]:
@@ -134,17 +135,3 @@ def _renew_metadata(folder: Path, files: Sequence[Path], *, was_repaired: bool) 
         return False
     told.write(folder)
     return True
-
-
-def _moved(reports: Sequence[RepairReport], folder: Path) -> tuple[RepairReport, ...]:
-    return tuple(
-        RepairReport(
-            path=folder / report.path.name,
-            topics=report.topics,
-            messages=report.messages,
-            lost_bytes=report.lost_bytes,
-            damaged_chunks=report.damaged_chunks,
-            lost_messages=report.lost_messages,
-        )
-        for report in reports
-    )

@@ -167,6 +167,7 @@ class _Session:
         try:
             for name, parameters in told.items():
                 self._nodes.append(self._made(name, parameters, parameter_file))
+                _refuse_unknown(self._nodes[-1], parameters, parameter_file)
             self._outputs = {
                 node.resolve_topic_name(row.name): row
                 for node in self._nodes
@@ -263,6 +264,19 @@ class _Session:
             # through the wire and back, as a recorder would have it: fields lose the digits that CDR drops
             output = _Output(time_ns=said.time_ns, data=serialize_message(said.message))
             self._said.setdefault(said.topic, []).append(output)
+
+
+def _refuse_unknown(node: GraphNode[Any], told: NodeParameters, parameter_file: Path | None) -> None:
+    """A parameter that is misspelt would change nothing, and all would be "the same".
+
+    One that was recorded and is no longer there is passed over: bags outlive versions.
+    """
+    unknown = node.unknown_parameters - {item.name for item in told.parameters}
+    if unknown:
+        raise BadParameterError(
+            f"{node.executable} has no parameter {', '.join(map(repr, sorted(unknown)))}; is it misspelt in "
+            f"{str(parameter_file)!r}?"
+        )
 
 
 def _plain(value: ParameterValue) -> Any:

@@ -2,6 +2,7 @@
 
 import base64
 import io
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from bags.search_run import Heard
 from robustnav_msgs_py.values import ColorImage, Detections
 
 MOST_PICTURES = 60
+WIDEST_GAP_S = 2.0  # between pictures, where that does not make them too many
 WIDEST_PX = 320
 JPEG_QUALITY = 72
 SAME_IMAGE_NS = 300_000_000  # a detection that is stamped farther from an image was made in another
@@ -33,7 +35,10 @@ class Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraFrame:
-    """What the camera showed at `t_s`. jpeg: base64; `decision` counts from 0, None where none was made."""
+    """What the camera showed at `t_s`. jpeg: base64; `decision` counts from 0, None where none was made.
+
+    The last one is of the end.
+    """
 
     t_s: float
     decision: int | None
@@ -53,11 +58,32 @@ class Moment:
 
 
 def chosen_moments(moments: Sequence[Moment]) -> tuple[Moment, ...]:
-    """At most `MOST_PICTURES` of them, evenly spread, the first and the last among them."""
-    if len(moments) <= MOST_PICTURES:
+    """At most `MOST_PICTURES` of them, evenly spread, the first and the last among them.
+
+    Where they are fewer, moments without a decision are put into the gaps between them, so that the picture
+    keeps up with a robot that drives for long on one decision.
+    """
+    if len(moments) > MOST_PICTURES:
+        places = np.linspace(0, len(moments) - 1, MOST_PICTURES).round().astype(int)
+        return tuple(moments[place] for place in places)
+    if len(moments) < 2:
         return tuple(moments)
-    places = np.linspace(0, len(moments) - 1, MOST_PICTURES).round().astype(int)
-    return tuple(moments[place] for place in places)
+    spare = MOST_PICTURES - len(moments)
+    gap_s = max(WIDEST_GAP_S, (moments[-1].t_s - moments[0].t_s) / max(spare, 1))
+    chosen = [moments[0]]
+    for before, after in itertools.pairwise(moments):
+        count = min(int((after.t_s - before.t_s) / gap_s), spare)
+        spare -= count
+        parts = [(number + 1) / (count + 1) for number in range(count)]
+        chosen += [_between(before, after, part) for part in parts]
+        chosen.append(after)
+    return tuple(chosen)
+
+
+def _between(before: Moment, after: Moment, part: float) -> Moment:
+    log_time_ns = before.log_time_ns + round(part * (after.log_time_ns - before.log_time_ns))
+    t_s = round(before.t_s + part * (after.t_s - before.t_s), 3)
+    return Moment(log_time_ns=log_time_ns, t_s=t_s, decision=None)
 
 
 def camera_frames(

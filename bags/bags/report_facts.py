@@ -42,6 +42,8 @@ def manifest_facts(manifest: Manifest | None) -> tuple[Fact, ...]:
         "commit": manifest.commit + changes if manifest.commit else "",
         "seed": "" if manifest.seed is None else str(manifest.seed),
         "scene": manifest.scene,
+        "clock": _clock(manifest),
+        "back ends": manifest.back_ends_text,
         "platform": manifest.platform,
         "packages": ", ".join(f"{row.package} {row.version}" for row in manifest.packages),
         "nodes": ", ".join(node.node for node in manifest.nodes),
@@ -49,6 +51,11 @@ def manifest_facts(manifest: Manifest | None) -> tuple[Fact, ...]:
         "redacted": "; ".join(manifest.redacted),
     }
     return tuple(Fact(name=name, text=text) for name, text in told.items() if text)
+
+
+def _clock(manifest: Manifest) -> str:
+    begun = "" if manifest.sim_start_ns is None else f"simulated, from {manifest.sim_start_ns / 1e9:.3f} s on"
+    return f"{begun}, in lock-step".removeprefix(", ") if manifest.lockstep else begun
 
 
 def _metres(length_m: float | None) -> str | None:

@@ -78,7 +78,6 @@ def complaints(bag: Bag, span: EpisodeSpan | None, clock: Clock) -> tuple[Compla
                 now = (status.level, status.message if status.level else "")
                 states[status.name] = now
                 if now != before:
-                    found.append(
-                        Complaint(t_s=t_s, node=status.name, level=LEVELS[status.level], text=status.message)
-                    )
+                    text = status.message if status.level else "well again"
+                    found.append(Complaint(t_s=t_s, node=status.name, level=LEVELS[status.level], text=text))
     return tuple(found)

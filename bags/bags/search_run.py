@@ -6,10 +6,11 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from bags.episodes import ACTIVE
 from bags.reader import Bag
 from bags.recorded_values import RecordedValue, namespace_of, recorded_values
 from robustnav_msgs_py.errors import BadFileError
-from robustnav_msgs_py.records import Decision, SearchPhase, SearchState
+from robustnav_msgs_py.records import Decision, SearchState
 from robustnav_msgs_py.values import (
     BeliefCloud,
     Detections,
@@ -36,7 +37,6 @@ TOPICS = (
     "detections",
     "detections/labels",
 )
-ACTIVE = (SearchPhase.SEARCHING, SearchPhase.DOCKING)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,7 +52,8 @@ class SearchRun:
     """One search, from its first `searching` to its end, or to the end of the bag where it had none.
 
     What was never recorded is None or empty. `final` is the last state that the planner told. `floor_map`,
-    `candidates`, `belief` and `visible` are the last that were told before the end.
+    `candidates`, `belief` and `visible` are the last that were told before the end. `lockstep`: log times are
+    those of the run's own clock, and tell nothing of the wall's.
     """
 
     namespace: str
@@ -60,6 +61,7 @@ class SearchRun:
     target: str
     begin_ns: int
     end_ns: int
+    lockstep: bool
     final: SearchState | None
     floor_map: OccupancyMap | None
     candidates: OccupancyMap | None
@@ -129,6 +131,7 @@ def read_search(bag: Bag, *, namespace: str | None = None, episode: int | None =
         target=final.target if final else told_target,
         begin_ns=begin_ns,
         end_ns=end_ns,
+        lockstep=bag.manifest is not None and bag.manifest.lockstep,
         final=final,
         floor_map=_last(in_time["map"]),
         candidates=_last(in_time["search/candidates"]),

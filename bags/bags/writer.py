@@ -23,8 +23,8 @@ from bags.offered_qos import OfferedQos
 from robustnav_msgs_py.errors import BadFileError
 
 NS_PER_S = 1_000_000_000
-# metadata.yaml of a large graph takes 10 ms to write; at one flush a second that is too much each time.
-FLUSHES_PER_METADATA = 10
+# metadata.yaml of a large graph takes 10 ms to write; at two flushes a second that is too much each time.
+FLUSHES_PER_METADATA = 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -232,9 +232,7 @@ def _essentials(manifest: Manifest, *, closed: bool) -> tuple[CustomEntry, ...]:
         "robustnav_commit": manifest.commit,
         "robustnav_seed": "" if manifest.seed is None else str(manifest.seed),
         "robustnav_scene": manifest.scene,
-        "robustnav_back_ends": ", ".join(
-            f"{row.node} {row.parameter}={row.choice}" for row in manifest.back_ends
-        ),
+        "robustnav_back_ends": manifest.back_ends_text,
         CLOSED_ENTRY: "yes" if closed else "no",
     }
     return tuple(CustomEntry(name=name, text=text) for name, text in told.items() if text)

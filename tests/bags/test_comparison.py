@@ -10,10 +10,12 @@ from geometry_msgs.msg import PoseStamped, Twist
 from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import OccupancyGrid, Path
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import LaserScan, PointCloud2
 from std_msgs.msg import String
 
-from bags.comparison import LONGEST_TEXT, ROUNDING, WALL_TIME_KEYS, FieldDifference, differences
+from bags.comparison import LEAST, LONGEST_TEXT, ROUNDING, WALL_TIME_KEYS, FieldDifference, differences
+from robustnav_msgs_py.conversions import belief_to_message
+from robustnav_msgs_py.values import BeliefCloud
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 
@@ -31,7 +33,7 @@ def record(**values: str) -> DiagnosticStatus:
 
 @given(any_float, any_float)
 def test_numbers_differ_by_more_than_rounding_and_nan_is_nan(one: float, other: float) -> None:
-    same = math.isclose(one, other, rel_tol=ROUNDING, abs_tol=ROUNDING) or (one != one and other != other)
+    same = math.isclose(one, other, rel_tol=ROUNDING, abs_tol=LEAST) or (one != one and other != other)
     first, second = Twist(), Twist()
     first.linear.x, second.linear.x = one, other
     assert (not list(differences(first, second))) == same
@@ -85,7 +87,7 @@ def test_numbers_in_arrays_are_told_by_their_place() -> None:
     assert not list(differences(first, first))
     (found,) = differences(first, second)
     assert found.field == "ranges"
-    assert found.first.endswith("at 2 of 4")
+    assert (found.first, found.second) == ("3.0 at 2 of 4", "3.5 at 2 of 4")
     shorter = LaserScan(ranges=array.array("f", [1.0]))
     (found,) = differences(first, shorter)
     assert (found.first, found.second) == ("4 values", "1 values")
@@ -97,8 +99,31 @@ def test_maps_differ_by_their_cells() -> None:
     cells[7] = 100
     second = OccupancyGrid(data=array.array("b", cells.tobytes()))
     (found,) = differences(first, second)
-    assert found.first.endswith("at 7 of 12")
-    assert "100" in found.second
+    assert (found.first, found.second) == ("0 at 7 of 12", "100 at 7 of 12")
+
+
+def belief(*probabilities: float) -> PointCloud2:
+    places_m = np.zeros((len(probabilities), 3), dtype=np.float32)
+    cloud = BeliefCloud(position_m=places_m, probability=np.array(probabilities), stamp_ns=0)
+    return belief_to_message(cloud)
+
+
+def test_clouds_differ_by_the_fields_of_their_points_and_by_more_than_rounding() -> None:
+    first = belief(0.1 + 0.2, 0.7, 2e-9)
+    assert not list(differences(first, belief(0.3, 0.7, 2e-9)))
+    assert list(differences(first, belief(0.3, 0.7, 3e-9))) == [
+        FieldDifference(field="data.probability", first="2e-09 at 2 of 3", second="3e-09 at 2 of 3")
+    ]
+
+
+def test_clouds_of_other_layouts_and_with_too_little_data_differ() -> None:
+    first, other = belief(0.5, 0.5), belief(0.5, 0.5)
+    other.fields[3].offset = 0
+    assert [found.field for found in differences(first, other)] == ["fields[3].offset"]
+    short = belief(0.5, 0.5)
+    short.data = short.data[:-1]
+    assert [found.field for found in differences(first, short)] == ["data"]
+    assert not list(differences(short, short))
 
 
 def test_what_took_how_long_is_no_difference() -> None:

@@ -19,7 +19,7 @@ from bags.manifest import Manifest
 from bags.reader import open_bag
 from bags.writer import BagWriter
 
-LIMIT_S = 20.0
+LIMIT_S = 60.0
 MOST_MISSING_S = 2.0
 TOPIC = "words"
 

@@ -3,7 +3,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bags.manifest import (
@@ -16,6 +16,8 @@ from bags.manifest import (
 )
 from bags.provenance import checkout_state, manifest_of_this_run
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.parameters import specs
+from robustnav_nodes.detection.parameters import DetectionParameters
 
 SCALARS = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=20)
 VALUES = SCALARS | st.lists(SCALARS, max_size=3).map(tuple)
@@ -39,6 +41,7 @@ MANIFESTS = st.builds(
 )
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])  # on a machine that does much else
 @given(MANIFESTS)
 def test_a_manifest_survives_as_json(manifest: Manifest) -> None:
     assert manifest_from_json(manifest.as_json()) == manifest
@@ -60,15 +63,23 @@ def test_back_ends_are_what_parameters_of_that_name_say(manifest: Manifest) -> N
         node="/dialogue",
         parameters=(
             NamedParameter(name="llm.backend", value="rules"),
-            NamedParameter(name="vlm_backend", value="none"),
-            NamedParameter(name="backend_url", value="x"),
+            NamedParameter(name="vlm_back_end", value="none"),
+            NamedParameter(name="back_end_url", value="x"),
+            NamedParameter(name="feedback_end", value="x"),
         ),
     )
     told = dataclasses.replace(manifest, nodes=(node,)).back_ends
     assert told == (
         BackEnd(node="/dialogue", parameter="llm.backend", choice="rules"),
-        BackEnd(node="/dialogue", parameter="vlm_backend", choice="none"),
+        BackEnd(node="/dialogue", parameter="vlm_back_end", choice="none"),
     )
+
+
+def test_the_back_end_of_the_detector_is_one() -> None:
+    defaults = tuple(NamedParameter(name=row.name, value=row.default) for row in specs(DetectionParameters))
+    node = NodeParameters(node="/detection", parameters=defaults)
+    told = Manifest(version="0", wall_start_ns=0, nodes=(node,))
+    assert told.back_ends_text == f"/detection back_end={DetectionParameters().back_end}"
 
 
 def test_the_commit_of_a_checkout_is_told_with_whether_files_differ(tmp_path: Path) -> None:

@@ -13,9 +13,10 @@ from mcap.reader import make_reader
 
 from bags.definitions import message_definition
 from bags.manifest import Manifest, NamedParameter, NodeParameters
-from bags.metrics import SearchMetrics, path_length_m, search_metrics, spl
+from bags.metrics import SearchMetrics, measure, path_length_m, search_metrics, spl
 from bags.metrics_settings import MetricsSettings, settings_of
 from bags.reader import open_bag
+from bags.search_run import read_search
 from bags.writer import BagWriter
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.records import SearchPhase
@@ -38,6 +39,15 @@ def test_a_straight_drive_along_a_corridor(search_bag: Callable[..., Path], corr
     assert metrics.false_alarms == 0
     assert metrics.sim_duration_s == pytest.approx(7.0)
     assert metrics.wall_duration_s == pytest.approx(7.6, abs=0.1)
+
+
+def test_a_run_in_lockstep_tells_nothing_of_the_walls_clock(search_bag: Callable[..., Path]) -> None:
+    with open_bag(search_bag()) as bag:
+        run, settings = read_search(bag), settings_of(bag.manifest)
+    assert measure(run, settings).wall_duration_s is not None
+    in_lockstep = measure(replace(run, lockstep=True), settings)
+    assert in_lockstep.wall_duration_s is None
+    assert in_lockstep.sim_duration_s == measure(run, settings).sim_duration_s
 
 
 def test_the_distance_that_counts_as_success_can_be_chosen(

@@ -51,6 +51,14 @@ def test_means_are_taken_over_those_that_tell(
     assert "not told by these bags: NQ (successes), NQ (all)" in shown(rows)
 
 
+def test_bags_are_named_by_what_tells_them_apart(search_bag: Callable[..., Path]) -> None:
+    (row,) = rows_of(search_bag())
+    text = shown([replace(row, bag=f"/runs/{day}/search") for day in ("monday", "friday")])
+    assert "monday/search" in text
+    assert "/runs" not in text
+    assert shown([replace(row, bag="/runs/monday/search")]).splitlines()[1].startswith("search ")
+
+
 def test_what_is_not_told_is_absent_from_the_file(
     tmp_path: Path, talk_bag: Callable[..., Path], search_bag: Callable[..., Path], corridor: Any
 ) -> None:

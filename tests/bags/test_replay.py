@@ -60,6 +60,16 @@ def test_what_cannot_be_replayed_is_refused_with_a_sentence(lockstep_bags: list[
             replay(bag, nodes=["brain"])
 
 
+def test_a_misspelt_parameter_is_refused(lockstep_bags: list[Path], tmp_path: Path) -> None:
+    changed = tmp_path / "changed.yaml"
+    changed.write_text("/**/planner:\n  ros__parameters:\n    varaint: random\n")
+    with (
+        open_bag(lockstep_bags[0]) as bag,
+        pytest.raises(BadParameterError, match="planner has no parameter 'varaint'; is it misspelt in"),
+    ):
+        replay(bag, nodes=["planner"], parameter_file=changed)
+
+
 def test_a_bag_that_tells_no_parameters_is_refused(tmp_path: Path) -> None:
     BagWriter(tmp_path / "bag", manifest=Manifest(version="0.1.0", wall_start_ns=0)).close()
     with (

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from bags.manifest import Manifest, NamedParameter, NodeParameters
 from bags.metrics import search_metrics
 from bags.reader import open_bag
 from bags.report_belief import LARGEST_BYTES, belief_film
-from bags.report_camera import MOST_PICTURES
+from bags.report_camera import MOST_PICTURES, WIDEST_GAP_S, Moment, chosen_moments
 from bags.report_data import ReportData, read_report
 from bags.report_file import report_page, write_report_page
 from bags.search_run import Heard
@@ -122,7 +123,7 @@ def test_the_page_may_load_nothing(search_bag: Callable[..., Path]) -> None:
 def test_the_parts_of_the_page_are_installed_and_the_script_is_short() -> None:
     folder = files("bags") / "report_page"
     assert {part.name for part in folder.iterdir()} == {"page.html", "style.css", "script.js"}
-    assert len((folder / "script.js").read_text(encoding="utf-8").splitlines()) < 300
+    assert len((folder / "script.js").read_text(encoding="utf-8").splitlines()) < 320
 
 
 def test_a_bag_without_most_topics_says_what_is_missing(talk_bag: Callable[..., Path]) -> None:
@@ -190,8 +191,22 @@ def test_pictures_are_small_few_and_carry_their_decision(picture_bag: Callable[.
             assert picture.size == (320, 200) == (frame.width, frame.height)
             assert picture.format == "JPEG"
     assert [frame.decision for frame in report.frames][:2] == [0, 1]
+    assert report.frames[-1].decision is None
     times = [frame.t_s for frame in report.frames]
     assert times == sorted(times)
+
+
+def test_pictures_keep_up_with_a_robot_that_drives_for_long_on_one_decision() -> None:
+    decided = [Moment(log_time_ns=10**9 * t, t_s=float(t), decision=n) for n, t in enumerate((0, 3, 40))]
+    chosen = chosen_moments([*decided, Moment(log_time_ns=10**9 * 42, t_s=42.0, decision=None)])
+    times = [moment.t_s for moment in chosen]
+    assert times == sorted(set(times))
+    assert max(after - before for before, after in pairwise(times)) <= WIDEST_GAP_S
+    assert [moment for moment in chosen if moment.decision is not None] == decided
+    assert all(moment.log_time_ns == round(10**9 * moment.t_s) for moment in chosen[:3])
+    hour = [Moment(log_time_ns=n * 10**12, t_s=1000.0 * n, decision=n) for n in range(5)]
+    assert len(chosen_moments(hour)) <= MOST_PICTURES
+    assert chosen_moments(hour[:1]) == tuple(hour[:1])
 
 
 def test_a_page_that_cannot_be_written_is_said(search_bag: Callable[..., Path], tmp_path: Path) -> None:

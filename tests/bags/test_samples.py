@@ -2,10 +2,12 @@
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
 import yaml
+from rosbags.highlevel import AnyReader
 from typer.testing import CliRunner
 
 from bags.bag_commands import bag_app
@@ -20,7 +22,7 @@ MOST_BYTES = 4_000_000
 def robustnav(*arguments: str) -> subprocess.CompletedProcess[str]:
     """The command, in a process of its own."""
     command = [sys.executable, "-m", "robustnav_nodes", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 
 @pytest.mark.parametrize("sample", sorted(path.parent for path in SAMPLES.glob("*/metadata.yaml")), ids=str)
@@ -31,6 +33,18 @@ def test_a_sample_is_small_whole_and_of_a_clean_checkout(sample: Path) -> None:
         assert bag.manifest is not None
         assert bag.manifest.lockstep
         assert not bag.manifest.uncommitted_changes
+        assert "/detection back_end=truth" in bag.manifest.back_ends_text
+
+
+def test_rosbags_and_mcap_read_every_message_of_a_sample() -> None:
+    mcap_ros2 = pytest.importorskip("mcap_ros2.reader")
+    with open_bag(SEARCH) as bag:
+        ours = Counter(raw.topic for raw in bag.raw_messages())
+    with AnyReader([SEARCH]) as reader:
+        decoded = ((row.topic, reader.deserialize(data, row.msgtype)) for row, _, data in reader.messages())
+        assert Counter(topic for topic, message in decoded if message is not None) == ours
+    told = mcap_ros2.read_ros2_messages(str(SEARCH / "search_0.mcap"))
+    assert Counter(item.channel.topic for item in told if item.ros_msg is not None) == ours
 
 
 def test_the_search_found_what_it_was_asked_for() -> None:

@@ -145,25 +145,32 @@ const drawStar = (pen, x, y, size) => {
 
 // --- the camera ---
 const pictures = data.frames.map((frame) => picture("jpeg", frame.jpeg));
-const nameOf = (frame) => (frame.decision === null ? "then" : `step ${data.decisions[frame.decision].step}`);
+const lastFrame = data.frames.at(-1);
+const nameOf = (frame) => (frame.decision !== null ? `step ${data.decisions[frame.decision].step}` : frame === lastFrame ? "the end" : "");
 const drawCamera = () => {
   const index = Math.max(0, latest(data.frames, now)), frame = data.frames[index], sheet = byId("picture");
   if (!frame) return;
   const sharp = 2, pen = sheet.getContext("2d");
   sheet.width = sharp * frame.width; sheet.height = sharp * frame.height;
   if (pictures[index].complete) pen.drawImage(pictures[index], 0, 0, sheet.width, sheet.height);
+  const shadeOf = (box) => (box.wanted ? paint.target : "#ffffff"), tags = [];
   for (const box of frame.boxes) {
-    const x = box.left * sheet.width, y = box.top * sheet.height;
-    const shade = box.wanted ? paint.target : "#ffffff";
-    pen.lineWidth = box.wanted ? 5 : 2.5; pen.strokeStyle = shade; pen.font = "22px system-ui, sans-serif";
-    pen.strokeRect(x, y, (box.right - box.left) * sheet.width, (box.bottom - box.top) * sheet.height);
-    const text = `${box.label} ${box.score.toFixed(2)}`, wide = pen.measureText(text).width + 10;
-    const high = box.wanted ? Math.min(box.bottom * sheet.height, sheet.height - 28) : Math.max(0, y - 28);
-    const from = Math.max(0, Math.min(x, sheet.width - wide));
-    pen.fillStyle = shade; pen.fillRect(from, high, wide, 28);
-    pen.fillStyle = paint.ink; pen.fillText(text, from + 5, high + 22);
+    pen.lineWidth = box.wanted ? 5 : 2.5; pen.strokeStyle = shadeOf(box);
+    pen.strokeRect(box.left * sheet.width, box.top * sheet.height, (box.right - box.left) * sheet.width, (box.bottom - box.top) * sheet.height);
   }
-  byId("caption").textContent = `${nameOf(frame)}, at ${seconds(frame.t_s)}`;
+  pen.font = "20px system-ui, sans-serif";
+  for (const box of frame.boxes.toReversed()) { // what was looked for keeps its place; a tag over another moves away
+    const text = `${box.label} ${box.score.toFixed(2)}`, wide = pen.measureText(text).width + 10;
+    const from = Math.max(0, Math.min(box.left * sheet.width, sheet.width - wide)), below = box.bottom * sheet.height, above = box.top * sheet.height - 26;
+    const places = [...(box.wanted ? [below, above] : [above, below]), above - 27, below + 27, above - 54, below + 54];
+    const free = (high) => high >= 0 && high + 26 <= sheet.height && tags.every((tag) => Math.abs(tag.high - high) >= 26 || from >= tag.from + tag.wide || tag.from >= from + wide);
+    const high = places.find(free) ?? (box.wanted ? Math.min(Math.max(0, below), sheet.height - 26) : null);
+    if (high === null) continue;
+    tags.push({ from, high, wide });
+    pen.fillStyle = shadeOf(box); pen.fillRect(from, high, wide, 26);
+    pen.fillStyle = paint.ink; pen.fillText(text, from + 5, high + 20);
+  }
+  byId("caption").textContent = [nameOf(frame), `at ${seconds(frame.t_s)}`].filter(Boolean).join(", ");
 };
 
 // --- lists ---
@@ -191,9 +198,10 @@ const lines = data.chat.map((line) => {
   make("small", button, `${line.who}, ${seconds(line.t_s)}`); make("br", button); button.append(line.text);
   return row;
 });
-const thumbs = data.frames.map((frame, index) => {
+const decided = data.frames.filter((frame) => !data.decisions.length || nameOf(frame));
+const thumbs = decided.map((frame) => {
   const button = link(make("button", byId("strip")), frame.t_s), image = make("img", button);
-  image.src = pictures[index].src; image.alt = ""; make("span", button, nameOf(frame));
+  image.src = `data:image/jpeg;base64,${frame.jpeg}`; image.alt = ""; make("span", button, nameOf(frame));
   return button;
 });
 const decisions = data.decisions.map((row) => {
@@ -252,7 +260,7 @@ const go = (t) => {
   byId("time").value = now; byId("time").setAttribute("aria-valuetext", seconds(now));
   byId("clock").textContent = `${now.toFixed(1)} / ${end.toFixed(1)} s`;
   drawMap(); drawCamera();
-  mark(decisions, latest(data.decisions, now), byId("decisions")); mark(thumbs, latest(data.frames, now), byId("strip"));
+  mark(decisions, latest(data.decisions, now), byId("decisions")); mark(thumbs, latest(decided, now), byId("strip"));
   lines.forEach((row, index) => row.classList.toggle("later", data.chat[index].t_s > now + 0.05));
 };
 const pause = () => { playing = 0; byId("play").textContent = "Play"; };

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sensor_msgs.msg import CameraInfo, Image
 
 from robustnav_msgs_py.conversions.arrays import from_array, to_array
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import CameraInfo, Image
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage
 
 _COLOR_ENCODINGS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "mono8": 1}

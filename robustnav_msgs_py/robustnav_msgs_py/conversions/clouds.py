@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sensor_msgs.msg import PointCloud2, PointField
 
 from robustnav_msgs_py.conversions.arrays import from_array, to_array
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import PointCloud2, PointField
 from robustnav_msgs_py.values import BeliefCloud, Detections, VisibleObjects
 
 _POSITION = [("x", "<f4"), ("y", "<f4"), ("z", "<f4")]

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from std_msgs.msg import Bool
+from robustnav_msgs_py.message_types import Bool
 
 
 def flag_to_message(flag: bool) -> Bool:

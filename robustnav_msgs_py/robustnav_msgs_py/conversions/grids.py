@@ -3,13 +3,12 @@
 from typing import Any
 
 import numpy as np
-from geometry_msgs.msg import Point, Pose
-from nav_msgs.msg import MapMetaData, OccupancyGrid
 
 from robustnav_msgs_py.conversions.arrays import from_array, to_array
 from robustnav_msgs_py.conversions.motion import quaternion, yaw_rad
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message, stamp_to_message
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import MapMetaData, OccupancyGrid, Point, Pose
 from robustnav_msgs_py.values import OccupancyMap, Pose2D
 
 

@@ -3,13 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import Point, Pose, Vector3
-from std_msgs.msg import ColorRGBA
-from visualization_msgs.msg import Marker, MarkerArray
-
 from robustnav_msgs_py.conversions.motion import quaternion, yaw_rad
 from robustnav_msgs_py.conversions.stamps import header
+from robustnav_msgs_py.message_types import ColorRGBA, Duration, Marker, MarkerArray, Point, Pose, Vector3
 from robustnav_msgs_py.values import Detections, ObjectInstance
 
 _OBJECT_COLOR = ColorRGBA(r=0.2, g=0.6, b=0.9, a=0.7)

@@ -4,12 +4,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vector3
-from nav_msgs.msg import Odometry as OdometryMessage
-from nav_msgs.msg import Path
-
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import Odometry as OdometryMessage
+from robustnav_msgs_py.message_types import Path, Point, Pose, PoseStamped, Quaternion, Twist, Vector3
 from robustnav_msgs_py.values import Odometry, Pose2D, StampedPose, Velocity
 
 _UNIT_TOLERANCE = 0.01

@@ -3,11 +3,11 @@
 from typing import Any
 
 import numpy as np
-from sensor_msgs.msg import LaserScan as LaserScanMessage
 
 from robustnav_msgs_py.conversions.arrays import from_array, to_array
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import LaserScan as LaserScanMessage
 from robustnav_msgs_py.values import LaserScan
 
 

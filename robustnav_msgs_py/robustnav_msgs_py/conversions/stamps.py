@@ -2,9 +2,7 @@
 
 from typing import Any
 
-from builtin_interfaces.msg import Time
-from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Header
+from robustnav_msgs_py.message_types import Clock, Header, Time
 
 NANOSECONDS = 1_000_000_000
 

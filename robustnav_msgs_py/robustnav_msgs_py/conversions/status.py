@@ -10,9 +10,8 @@ import typing
 from enum import Enum
 from typing import Any, TypeVar
 
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
-
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import DiagnosticStatus, KeyValue
 from robustnav_msgs_py.values import OK, Status
 
 R = TypeVar("R")

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from std_msgs.msg import String
-
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import String
 
 LABEL_SEPARATOR = ", "
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Any
 
-from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
-from geometry_msgs.msg import Transform as TransformMessage
-
 from robustnav_msgs_py.conversions.stamps import header, stamp_from_message
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount
+from robustnav_msgs_py.message_types import Quaternion, TransformStamped, Vector3
+from robustnav_msgs_py.message_types import Transform as TransformMessage
 from robustnav_msgs_py.values import Pose2D
 
 # Part of every ROS from apt, and of no wheel.

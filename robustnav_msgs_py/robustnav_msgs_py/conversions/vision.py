@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from typing import Any
 
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
-
 from robustnav_msgs_py.conversions.stamps import header
 from robustnav_msgs_py.errors import BadMessageError
+from robustnav_msgs_py.message_types import Point, Pose, Quaternion, Vector3
 from robustnav_msgs_py.values import CameraModel, Detections
 
 # Part of every ROS from apt, and of no wheel.

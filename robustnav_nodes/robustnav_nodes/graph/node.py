@@ -72,7 +72,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         always = wiring(self)
         self._diagnostics = always.publisher(contract.topic("/diagnostics"), managed=False)
         always.timer(DIAGNOSTICS_PERIOD_S, self._publish_diagnostics, steady=True)
-        for name in self._bound.unknown_overrides():
+        for name in sorted(self.unknown_parameters):
             self.health.problem(f"parameter {name}", "there is no such parameter; is it misspelt?")
 
     # What a subclass overrides.
@@ -91,6 +91,11 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def parameters_changed(self) -> None:
         """Called after a parameter was set while the node runs; `self.parameters` is new."""
+
+    @property
+    def unknown_parameters(self) -> frozenset[str]:
+        """Names given at start-up that the node does not have: most likely misspelt."""
+        return frozenset(self._bound.unknown_overrides())
 
     # What a subclass uses.
 
