@@ -286,8 +286,15 @@ def test_a_problem_is_told_until_the_robot_is_told_something_else(fresh: Simulat
     assert fresh.problem == ""
 
 
-def test_random_commands_never_take_the_robot_anywhere_it_cannot_be() -> None:
-    """Commands, goals and actions at random, in homes of all difficulties, with things moved in."""
+@pytest.mark.parametrize(
+    "longest_s", [0.5, pytest.param(12.0, marks=pytest.mark.slow)], ids=["hasty", "patient"]
+)
+def test_random_commands_never_take_the_robot_anywhere_it_cannot_be(longest_s: float) -> None:
+    """A thousand commands, goals and actions at random, in homes of all difficulties, with things moved in.
+
+    Each has up to `longest_s` before the next one comes, velocities as if somebody kept publishing them.
+    """
+    went_m = 0.0
     for seed in range(20):
         rng = np.random.default_rng(seed)
         difficulty = ("easy", "medium", "hard")[seed % 3]
@@ -300,6 +307,7 @@ def test_random_commands_never_take_the_robot_anywhere_it_cannot_be() -> None:
                     float(rng.uniform(bounds.x_min_m - 0.3, bounds.x_max_m + 0.3)),
                     float(rng.uniform(bounds.y_min_m - 0.3, bounds.y_max_m + 0.3)),
                 )
+                velocity = None
                 try:
                     match int(rng.integers(4)):
                         case 0:
@@ -310,17 +318,22 @@ def test_random_commands_never_take_the_robot_anywhere_it_cannot_be() -> None:
                             )
                         case _:
                             linear, angular = rng.normal(0.0, 1.0, 2).tolist()
-                            simulation.command(Velocity(linear_m_s=linear, angular_rad_s=angular))
+                            velocity = Velocity(linear_m_s=linear, angular_rad_s=angular)
                 except RobustnavError:
                     pass
-                for _ in range(6):
-                    simulation.step()
+                for step in range(round(rng.uniform(0.0, longest_s) / simulation.period_s)):
+                    if velocity is not None and step % 20 == 0:
+                        simulation.command(velocity)
+                    before = simulation.drive.pose
                     simulation.step()
                     pose = simulation.drive.pose
+                    went_m += pose.distance_m(before)
+                    assert before.distance_m(pose) <= 0.5 * simulation.period_s + 1e-9
                     beyond = np.maximum(low - (pose.x_m, pose.y_m), (pose.x_m, pose.y_m) - high)
                     away_m = np.hypot(*np.maximum(beyond, 0.0).T).min()
                     assert away_m >= 0.15, (seed, pose)
                     assert simulation.home.bounds.holds(pose.x_m, pose.y_m)
+    assert went_m > 25.0 * longest_s
 
 
 def test_reset_brings_the_robot_back_and_time_goes_on(fresh: Simulation, free_poses: FreePoses) -> None:
@@ -450,6 +463,17 @@ def test_a_frozen_camera_repeats_its_picture_under_new_stamps() -> None:
         assert told(shoot(simulation))[1:] != told(first)[1:]
 
 
+def test_who_begins_to_listen_to_a_frozen_camera_hears_the_same_picture_again_and_again() -> None:
+    with Simulation(SimParameters(seed=1, **SMALL)) as simulation:
+        nobody = shoot(simulation, Wanted(color=False, depth=False, visible=False))
+        assert nobody.color is None
+        simulation.fail("frozen camera")
+        first = shoot(simulation)
+        simulation.act("left 90")
+        finish(simulation)
+        assert told(shoot(simulation))[1:] == told(first)[1:]
+
+
 def test_wheels_that_slip_claim_more_than_there_is() -> None:
     settings = SimParameters(seed=1, drift_share_per_m=1e-9, **SMALL)
     with Simulation(settings) as simulation:
@@ -531,6 +555,16 @@ def test_a_door_in_which_the_robot_stands_waits() -> None:
         simulation.place(Pose2D(x_m=x_m, y_m=y_m, yaw_rad=math.pi / 2.0 if door.along_x else 0.0))
         simulation.fail(f"block {' / '.join(door.rooms)}")
         for _ in range(10):
+            simulation.step()
+        assert simulation.stage.closed == ()
+        # Meanwhile nothing is built anew step by step, and other doors shut and open.
+        scenery, other = simulation.stage.scenery, simulation.home.doors[-1]
+        simulation.step()
+        assert simulation.stage.scenery is scenery
+        simulation.fail(f"block {' / '.join(other.rooms)} 1")
+        simulation.step()
+        assert simulation.stage.closed == (other,)
+        for _ in range(50):
             simulation.step()
         assert simulation.stage.closed == ()
         simulation.act("forward 0.6")
