@@ -175,12 +175,19 @@ class Simulation:
         self.drive.place(pose)
         self.stop()
 
-    def reset(self) -> None:
-        """Put the robot back to its start, standing, with nothing going wrong; time goes on."""
+    def reset(self) -> bool:
+        """Put the robot back to its start, standing, with nothing going wrong; time goes on.
+
+        Whether objects are elsewhere now: those that were moved are put back.
+        """
         self.faults.clear()
         self._close_doors()
         self._driver.reset()
         self.place(self._start)
+        put_back = self.stage.put_back()
+        if put_back:
+            self._observer.look_at(self.home)
+        return put_back
 
     def fail(self, line: str) -> bool:
         """Let something go wrong (`faults`); whether objects are elsewhere now.

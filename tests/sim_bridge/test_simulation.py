@@ -625,7 +625,8 @@ def is_where_it_is_said_to_be(simulation: Simulation, instance: int, free_poses:
 def test_a_moved_object_is_elsewhere_for_everybody(free_poses: FreePoses) -> None:
     """Truth, picture and rays agree on its place, also where doors close and open afterwards."""
     with Simulation(SimParameters(seed=2)) as simulation:
-        instance = next(thing.instance for thing in simulation.home.objects if thing.label == "mug")
+        first = simulation.home
+        instance = next(thing.instance for thing in first.objects if thing.label == "mug")
         line = f"block {' / '.join(simulation.home.doors[0].rooms)}"
         for fault in (None, line, "clear"):
             before = simulation.home.objects[instance]
@@ -636,6 +637,12 @@ def test_a_moved_object_is_elsewhere_for_everybody(free_poses: FreePoses) -> Non
             if fault is not None:
                 simulation.fail(fault)
                 assert is_where_it_is_said_to_be(simulation, instance, free_poses)
+        away = simulation.home.objects[instance]
+        assert simulation.reset()
+        assert simulation.home == first
+        assert is_where_it_is_said_to_be(simulation, instance, free_poses)
+        assert not met_from_above(simulation, instance, away.centre_m)
+        assert not simulation.reset()
 
 
 def late(settings: dict[str, object]) -> list[tuple[int, int]]:
