@@ -20,8 +20,8 @@
 | `map`, `search/candidates` | once, latched |
 | `truth/objects`, `truth/labels`, `truth/episode` | once, latched; the first again when one is moved |
 
-Services: `~/reset` (robot and objects where they began, nothing goes wrong any more; time goes on), `~/pause`, `~/step`
-(`lockstep_periods` steps while paused).
+Services: `~/reset` (robot and objects where they began, nothing goes wrong any more; time goes on),
+`~/pause`, `~/step` (`lockstep_periods` steps while paused).
 """
 
 import dataclasses
