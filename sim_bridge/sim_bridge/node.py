@@ -20,8 +20,8 @@
 | `map`, `search/candidates` | once, latched |
 | `truth/objects`, `truth/labels`, `truth/episode` | once, latched; the first again when one is moved |
 
-Services: `~/reset` (back to the start, nothing goes wrong any more; time goes on), `~/pause`, `~/step`
-(`lockstep_periods` steps while paused).
+Services: `~/reset` (robot and objects where they began, nothing goes wrong any more; time goes on),
+`~/pause`, `~/step` (`lockstep_periods` steps while paused).
 """
 
 import dataclasses
@@ -178,7 +178,8 @@ class SimBridge(GraphNode[SimParameters]):
         self._objects_out.publish(objects_to_message(objects, self._running.now_ns))
 
     def _reset(self, _request: Any, response: Any) -> Any:
-        self._running.reset()
+        if self._running.reset():
+            self._say_objects()
         response.success, response.message = True, "the robot stands at its start"
         return response
 

@@ -7,7 +7,6 @@ from types import TracebackType
 import numpy as np
 
 from robustnav_msgs_py.conversions.transforms import BASE_FRAME
-from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.frames import CameraMount
 from robustnav_msgs_py.records import Episode
 from robustnav_msgs_py.values import LaserScan, Odometry, Pose2D, Velocity
@@ -176,12 +175,19 @@ class Simulation:
         self.drive.place(pose)
         self.stop()
 
-    def reset(self) -> None:
-        """Put the robot back to its start, standing, with nothing going wrong; time goes on."""
+    def reset(self) -> bool:
+        """Put the robot back to its start, standing, with nothing going wrong; time goes on.
+
+        Whether objects are elsewhere now: those that were moved are put back.
+        """
         self.faults.clear()
         self._close_doors()
         self._driver.reset()
         self.place(self._start)
+        put_back = self.stage.put_back()
+        if put_back:
+            self._observer.look_at(self.home)
+        return put_back
 
     def fail(self, line: str) -> bool:
         """Let something go wrong (`faults`); whether objects are elsewhere now.
@@ -296,16 +302,16 @@ class Simulation:
     def _close_doors(self) -> None:
         """Let the doors be as the faults want them; one where the robot stands waits for it to leave."""
         pairs = self.faults.blocked_doors(self.now_ns)
-        doors = tuple(door for door in self.home.doors if door.rooms in pairs)
-        if doors == self.stage.closed:
+        closed = self.stage.closed
+        doors = tuple(
+            door
+            for door in self.home.doors
+            if door.rooms in pairs and (door in closed or not self.drive.is_in_the_way_of(door.opening))
+        )
+        if doors == closed:
             return
-        before = self.stage.closed
         self.stage.close_doors(doors)
-        try:
-            self.drive.replace_obstacles(self.stage.obstacles)
-        except BadMessageError:
-            self.stage.close_doors(before)
-            return
+        self.drive.replace_obstacles(self.stage.obstacles)
         self.follower.replan(self._planner())
         self._camera.scenery = self.stage.scenery
 

@@ -29,6 +29,7 @@ class Stage:
     def __init__(self, home: Home, moved_in: Sequence[Furniture] = ()) -> None:
         """Build it (some 100 ms). Raises BadSceneError where PyBullet has no world left."""
         self.home = home
+        self._at_first = home.objects
         whole = replace(home, furniture=(*home.furniture, *moved_in))
         self._rects = whole.obstacles()
         self._free_grid = ClearanceGrid(home.bounds, RESOLUTION_M).with_rects(self._rects)
@@ -97,9 +98,22 @@ class Stage:
         self.home = replace(
             self.home, objects=tuple(put if other is thing else other for other in self.home.objects)
         )
-        self.world.move(instance, put.x_m, put.y_m, put.z_m, put.yaw_rad)
-        self._show(put)
+        self._put(put)
         return put
+
+    def put_back(self) -> bool:
+        """Put every object back that was moved; whether there was one."""
+        moved_away = [
+            thing for thing, now in zip(self._at_first, self.home.objects, strict=True) if now is not thing
+        ]
+        self.home = replace(self.home, objects=self._at_first)
+        for thing in moved_away:
+            self._put(thing)
+        return bool(moved_away)
+
+    def _put(self, thing: SmallObject) -> None:
+        self.world.move(thing.instance, thing.x_m, thing.y_m, thing.z_m, thing.yaw_rad)
+        self._show(thing)
 
     def _show(self, thing: SmallObject) -> None:
         self.scenery.move(thing.instance, thing.x_m, thing.y_m, thing.z_m, thing.yaw_rad)

@@ -27,6 +27,8 @@ if not find_spec("pybullet"):
         "robot/test_goal_follower.py",
         "sensors",
         "test_node.py",
+        "test_simulated_faults.py",
+        "test_simulated_motion.py",
         "test_simulation.py",
     ]
 

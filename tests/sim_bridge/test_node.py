@@ -36,6 +36,9 @@ from robustnav_nodes.graph.environment import prepare_environment
 from robustnav_nodes.graph.message_class import message_class
 from sim_bridge.node import SimBridge
 from sim_bridge.robot.planar import composed
+from sim_bridge.sensors.camera import Camera
+from sim_bridge.sensors.scan import Laser
+from sim_bridge.sensors.visibility import Observer
 
 PATIENCE_S = 20.0
 
@@ -305,6 +308,51 @@ def test_a_goal_in_odom_is_meant_where_odometry_has_it(robot: Robot) -> None:
     finally:
         drifting.trigger_shutdown()
         drifting.destroy_node()
+
+
+def test_only_what_somebody_listens_to_is_rendered(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is computed in two seconds, first without listeners, then with one more each time."""
+    work: list[str] = []
+
+    def counted(owner: type, name: str, word: Callable[..., str]) -> None:
+        real = getattr(owner, name)
+
+        def call(self: Any, *args: Any, **options: Any) -> Any:
+            work.append(word(**options))
+            return real(self, *args, **options)
+
+        monkeypatch.setattr(owner, name, call)
+
+    counted(Camera, "take", lambda color=True: "colour" if color else "depth")
+    counted(Observer, "look", lambda **_: "truth")
+    counted(Laser, "take", lambda **_: "scan")
+    alone = SimBridge(parameter_overrides=[Parameter("camera_width", value=80)], namespace="alone")
+    try:
+        alone.trigger_configure()
+        alone.trigger_activate()
+        expected: set[str] = set()
+        for name, outlet, adds in (
+            ("", None, set()),
+            ("scan", alone._scan_out, {"scan"}),
+            ("truth/visible", alone._visible_out, {"truth"}),
+            ("camera/depth/image_raw", alone._depth_out, {"depth"}),
+            ("camera/image_raw", alone._color_out, {"colour"}),
+        ):
+            if outlet is not None:
+                row = contract.topic(name)
+                robot.ear.create_subscription(
+                    message_class(row.type), f"alone/{name}", lambda _: None, qos.heard(row.qos)
+                )
+                robot.until(lambda outlet=outlet: outlet.get_subscription_count() > 0)
+            # Who wants colour gets depth from the same picture.
+            expected = (expected | adds) - ({"depth"} if adds == {"colour"} else set())
+            work.clear()
+            for _ in range(100):
+                alone._step()
+            assert set(work) == expected, name
+    finally:
+        alone.trigger_shutdown()
+        alone.destroy_node()
 
 
 def test_a_home_that_cannot_be_built_leaves_a_sentence(robot: Robot) -> None:

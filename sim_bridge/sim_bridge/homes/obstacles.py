@@ -9,6 +9,8 @@ import scipy.ndimage
 from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.rect import Rect
 
+# On a grid, all clearances from here on are the same: no robot is so wide, and halls stay cheap.
+FAR_M = 1.0
 # The floor is looked at in squares of this side; each remembers which rectangles can be nearest in it.
 SQUARE_M = 0.10
 ROUNDING_M = 1e-9
@@ -86,7 +88,10 @@ class Obstacles:
 
 
 class ClearanceGrid:
-    """Clearance (m) at the centres of the cells of a grid over `bounds`; rows along y. Immutable."""
+    """Clearance (m), up to FAR_M, at the centres of the cells of a grid over `bounds`; rows along y.
+
+    Immutable.
+    """
 
     def __init__(self, bounds: Rect, resolution_m: float, cells_m: Float64 | None = None) -> None:
         self.bounds = bounds
@@ -98,15 +103,14 @@ class ClearanceGrid:
         if cells_m is None:
             to_x = np.minimum(self.x_m - bounds.x_min_m, bounds.x_max_m - self.x_m)
             to_y = np.minimum(self.y_m - bounds.y_min_m, bounds.y_max_m - self.y_m)
-            cells_m = np.minimum(to_x[None, :], to_y[:, None])
+            cells_m = np.minimum(np.minimum(to_x, FAR_M)[None, :], to_y[:, None])
         self.cells_m: Float64 = cells_m
 
     def with_rects(self, rects: Sequence[Rect]) -> "ClearanceGrid":
         """The grid with obstacles added."""
         cells_m = self.cells_m.copy()
+        reach_m = FAR_M + self.resolution_m
         for rect in rects:
-            # A rectangle changes nothing further away than the largest clearance so far.
-            reach_m = max(float(cells_m.max(initial=0.0)), 0.0) + self.resolution_m
             rows = _between(self.y_m, rect.y_min_m - reach_m, rect.y_max_m + reach_m)
             columns = _between(self.x_m, rect.x_min_m - reach_m, rect.x_max_m + reach_m)
             x_m, y_m = self.x_m[columns], self.y_m[rows]

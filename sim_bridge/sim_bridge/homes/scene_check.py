@@ -1,14 +1,15 @@
 """Whether a home holds together: nothing overlaps or floats, and the robot gets everywhere."""
 
+import math
 from collections.abc import Iterator
 
 import scipy.ndimage
 
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.floor_plan import RESOLUTION_M
-from sim_bridge.homes.furniture.carpentry import GAP_M
 from sim_bridge.homes.furniture.furnishing import PASSAGE_RADII_M
-from sim_bridge.homes.home import Furniture, Home, Room, SmallObject
+from sim_bridge.homes.home import Furniture, Home, SmallObject
+from sim_bridge.homes.objects.arrangement import HEADROOM_M, headroom_m
 from sim_bridge.homes.obstacles import ClearanceGrid, Obstacles
 from sim_bridge.homes.rect import Rect
 
@@ -16,6 +17,8 @@ from sim_bridge.homes.rect import Rect
 ROBOT_RADIUS_M = min(PASSAGE_RADII_M)
 # From where a robot can stand to the furniture that it must look at.
 REACH_M = 0.45
+# What hangs has the inside of a wall so far behind its back: it may hang a little before the wall's face.
+BEHIND_M = 0.045
 TOLERANCE_M = 1e-6
 
 
@@ -44,43 +47,52 @@ def _problems(home: Home) -> Iterator[str]:
 def _furniture_problems(home: Home) -> Iterator[str]:
     insides = {room.name: room.inside for room in home.rooms}
     names: set[str] = set()
-    for at, piece in enumerate(home.furniture):
+    standing: dict[str, list[tuple[Furniture, Rect]]] = {}
+    for piece in home.furniture:
         if piece.name in names:
             yield f"two pieces of furniture are called {piece.name!r}; give each a name of its own"
         names.add(piece.name)
-        inside = insides.get(piece.room)
+        footprint, inside = piece.footprint, insides.get(piece.room)
         if inside is None:
             yield f"the {piece.name} is said to be in {piece.room!r}, which is no room of it"
-        elif not inside.contains(piece.footprint):
+        elif not inside.contains(footprint):
             yield (
                 f"the {piece.name} reaches through a wall of the {piece.room}: it covers "
-                f"{_span(piece.footprint)}, the floor is {_span(inside)}"
+                f"{_span(footprint)}, the floor is {_span(inside)}"
             )
         for door in home.doors:
-            if piece.footprint.overlaps(door.opening):
+            if footprint.overlaps(door.opening):
                 yield f"the {piece.name} stands in the door between {' and '.join(door.rooms)}"
-        for other in home.furniture[:at]:
-            if piece.footprint.overlaps(other.footprint):
+        # All of a piece is in its room: it can meet no piece of another.
+        neighbours = standing.setdefault(piece.room, [])
+        for other, taken in neighbours:
+            if footprint.overlaps(taken):
                 yield f"the {piece.name} and the {other.name} overlap"
+        neighbours.append((piece, footprint))
 
 
 def _object_problems(home: Home) -> Iterator[str]:
     pieces = {piece.name: piece for piece in home.furniture}
-    rooms = {room.name: room for room in home.rooms}
+    standing: dict[tuple[str, int], list[tuple[SmallObject, Rect]]] = {}
     for at, thing in enumerate(home.objects):
         name = f"{thing.look.colour} {thing.label} (object {thing.instance})"
         if thing.instance != at:
             yield f"the {name} is number {at} in the list; instances count from 0"
         if thing.label not in home.labels:
             yield f"the {name} is of a class that the labels {', '.join(home.labels)} lack"
-        piece = pieces.get(thing.furniture)
+        piece, footprint = pieces.get(thing.furniture), thing.footprint
         if piece is None or not _stands_on(thing, piece):
             yield f"the {name} does not stand on the {thing.furniture}: all of it must be on one surface"
-        elif piece.surfaces[thing.surface].hangs and not _at_wall(thing, rooms[piece.room]):
-            yield f"the {name} hangs in the air: no wall is behind the {piece.name}"
-        for other in home.objects[:at]:
-            if _same_place(thing, other) and thing.footprint.overlaps(other.footprint):
+        elif piece.surfaces[thing.surface].hangs:
+            if not _hangs_on_a_wall(thing, piece, home):
+                yield f"the {name} hangs in the air: no wall, or a door or window, is behind the {piece.name}"
+        elif thing.size_m[2] > headroom_m(piece, piece.surfaces[thing.surface]) + HEADROOM_M + TOLERANCE_M:
+            yield f"the {name} is too tall for the board above it; choose another surface of the {piece.name}"
+        neighbours = standing.setdefault((thing.furniture, thing.surface), [])
+        for other, taken in neighbours:
+            if footprint.overlaps(taken):
                 yield f"the {name} and the {other.look.colour} {other.label} overlap"
+        neighbours.append((thing, footprint))
 
 
 def _stands_on(thing: SmallObject, piece: Furniture) -> bool:
@@ -91,13 +103,22 @@ def _stands_on(thing: SmallObject, piece: Furniture) -> bool:
     return abs(surface.height_m - thing.z_m) < TOLERANCE_M and area.contains(thing.footprint)
 
 
-def _at_wall(thing: SmallObject, room: Room) -> bool:
-    """Whether the object is as near to a wall of its room as what hangs is."""
-    return not room.inside.grown(-GAP_M / 2.0).contains(thing.footprint)
-
-
-def _same_place(thing: SmallObject, other: SmallObject) -> bool:
-    return (thing.furniture, thing.surface) == (other.furniture, other.surface)
+def _hangs_on_a_wall(thing: SmallObject, piece: Furniture, home: Home) -> bool:
+    """Whether a wall is right behind all of the object, and neither a door nor a window."""
+    area, top_m = thing.footprint, thing.z_m + thing.size_m[2]
+    if any(
+        window.z_min_m < top_m and thing.z_m < window.z_max_m and area.grown(BEHIND_M).overlaps(window.pane)
+        for window in home.windows
+    ):
+        return False
+    ahead_x, ahead_y = (round(way) for way in (math.cos(piece.yaw_rad), math.sin(piece.yaw_rad)))
+    xs = {0: (area.x_min_m, area.x_max_m), 1: (area.x_min_m,), -1: (area.x_max_m,)}[ahead_x]
+    ys = {0: (area.y_min_m, area.y_max_m), 1: (area.y_min_m,), -1: (area.y_max_m,)}[ahead_y]
+    behind = [(x_m - BEHIND_M * ahead_x, y_m - BEHIND_M * ahead_y) for x_m in xs for y_m in ys]
+    return any(
+        wall.z_min_m <= thing.z_m and top_m <= wall.z_max_m and all(wall.base.holds(*end) for end in behind)
+        for wall in home.walls
+    )
 
 
 def _floor_problems(home: Home) -> Iterator[str]:

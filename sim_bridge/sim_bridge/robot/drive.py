@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from robustnav_msgs_py.errors import BadMessageError
 from robustnav_msgs_py.values import Pose2D, Velocity
 from sim_bridge.homes.obstacles import Obstacles
+from sim_bridge.homes.rect import Rect
 
 STANDSTILL = Velocity(linear_m_s=0.0, angular_rad_s=0.0)
 STANDING_M_S = 1e-3
@@ -77,6 +78,12 @@ class Drive:
         self.pose = Pose2D(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=math.remainder(pose.yaw_rad, math.tau))
         self.velocity = STANDSTILL
         return True
+
+    def is_in_the_way_of(self, area: Rect) -> bool:
+        """Whether something that filled the area would be too near to the robot."""
+        beyond_x = max(area.x_min_m - self.pose.x_m, self.pose.x_m - area.x_max_m, 0.0)
+        beyond_y = max(area.y_min_m - self.pose.y_m, self.pose.y_m - area.y_max_m, 0.0)
+        return math.hypot(beyond_x, beyond_y) < self.keep_m
 
     def replace_obstacles(self, obstacles: Obstacles) -> None:
         """Go on among other obstacles: a door has been closed, a thing has been put elsewhere.

@@ -21,6 +21,14 @@ class Shot:
         """The shot without its picture, or without its depth."""
         return replace(self, color=None if color else self.color, depth=None if depth else self.depth)
 
+    def holds(self, wanted: "Wanted") -> bool:
+        """Whether it has all that is wanted."""
+        return (
+            (self.color is not None or not wanted.color)
+            and (self.depth is not None or not wanted.depth)
+            and (self.visible is not None or not wanted.visible)
+        )
+
     def stamped(self, stamp_ns: int) -> "Shot":
         """The same under another stamp."""
         return Shot(
@@ -55,10 +63,13 @@ class CameraDriver:
     def shoot(
         self, number: int, pose: Pose2D, velocity: Velocity, stamp_ns: int, wanted: Wanted, *, frozen: bool
     ) -> None:
-        """Take picture number `number`; a frozen camera takes the last one again, under a new stamp."""
+        """Take picture number `number`; a frozen camera gives the last one again, under a new stamp.
+
+        Where somebody listens to what the last one lacks, because nobody did, it takes one more.
+        """
         if self._dropper.drops(number):
             return
-        if not frozen or self._last is None:
+        if not frozen or self._last is None or not self._last.holds(wanted):
             self._last = self._taken(number, pose, velocity, stamp_ns, wanted)
         self._delay.add(self._last.stamped(stamp_ns), number, stamp_ns)
 

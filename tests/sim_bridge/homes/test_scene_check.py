@@ -8,10 +8,12 @@ import pytest
 from robustnav_msgs_py.errors import BadSceneError
 from robustnav_msgs_py.values import Pose2D
 from sim_bridge.homes.build import build_home
+from sim_bridge.homes.furniture.catalogue import default_style
 from sim_bridge.homes.generator import generate_scene
 from sim_bridge.homes.home import Furniture, Home, SmallObject
+from sim_bridge.homes.objects.catalogue import default_look
 from sim_bridge.homes.rect import Rect
-from sim_bridge.homes.scene import Scene
+from sim_bridge.homes.scene import Scene, SceneFurniture, SceneObject
 from sim_bridge.homes.scene_check import check_home, check_passages
 
 
@@ -155,7 +157,88 @@ def test_a_picture_that_hangs_in_the_air(home: Home) -> None:
     assert home.furniture[number] is piece
     assert home.objects[at] is thing
     thing = broken.objects[0]
-    refused(broken, f"{name_of(thing)} hangs in the air: no wall is behind the {piece.name}$")
+    refused(
+        broken,
+        f"{name_of(thing)} hangs in the air: no wall, or a door or window, is behind the {piece.name}$",
+    )
+
+
+def hung(home: Home) -> tuple[Home, SmallObject, Furniture]:
+    """The home with nothing in it but a picture and the piece that it hangs over."""
+    thing = next(thing for thing in home.objects if thing.label == "picture")
+    piece = next(piece for piece in home.furniture if piece.name == thing.furniture)
+    thing = dataclasses.replace(thing, instance=0)
+    return dataclasses.replace(home, furniture=(piece,), objects=(thing,)), thing, piece
+
+
+def test_a_picture_over_a_window_or_a_door(home: Home) -> None:
+    sound, thing, piece = hung(home)
+    check_home(sound)
+    area = thing.footprint.grown(0.01)
+    hangs = f"{name_of(thing)} hangs in the air: no wall, or a door or window, is behind the {piece.name}$"
+    window = dataclasses.replace(home.windows[0], pane=area)
+    refused(dataclasses.replace(sound, windows=(window,)), hangs)
+    # Above the window's top, or below its sill, it may hang.
+    low = dataclasses.replace(window, z_min_m=0.1, z_max_m=thing.z_m - 0.01)
+    check_home(dataclasses.replace(sound, windows=(low,)))
+    # Of the wall behind it, only the lintel is left.
+    behind = area.grown(0.1)
+    walls = tuple(
+        dataclasses.replace(wall, z_min_m=2.05) if wall.base.overlaps(behind) else wall for wall in home.walls
+    )
+    refused(dataclasses.replace(sound, walls=walls), hangs)
+
+
+def test_an_object_that_reaches_through_the_board_above_it(scene: Scene) -> None:
+    room = scene.rooms[0]
+    shelf = SceneFurniture(
+        name="low shelf 9",
+        kind="low shelf",
+        room=room.name,
+        x_m=scene.start.x_m,
+        y_m=scene.start.y_m + 0.6,
+        quarter_turns=0,
+        style=default_style("low shelf"),
+    )
+    plant = SceneObject(
+        label="plant",
+        look=default_look("plant"),
+        furniture=shelf.name,
+        surface=1,
+        x_m=0.0,
+        y_m=0.0,
+        turn_rad=0.0,
+    )
+    x_m, y_m = room.area.centre_m
+    alone = dataclasses.replace(
+        scene,
+        furniture=(dataclasses.replace(shelf, x_m=x_m, y_m=y_m),),
+        objects=(plant,),
+        start=Pose2D(x_m=x_m, y_m=y_m - 1.2),
+    )
+    with pytest.raises(BadSceneError, match=r"plant \(object 0\) is too tall for the board above it; choose"):
+        build_home(alone)
+    on_top = dataclasses.replace(plant, surface=0)
+    assert build_home(dataclasses.replace(alone, objects=(on_top,))).objects[0].label == "plant"
+
+
+def test_a_room_of_an_unknown_kind_and_a_home_that_no_map_can_hold(scene: Scene) -> None:
+    first = scene.rooms[0]
+
+    def with_first(**changed: object) -> Scene:
+        return dataclasses.replace(scene, rooms=(dataclasses.replace(first, **changed), *scene.rooms[1:]))
+
+    with pytest.raises(
+        BadSceneError, match=f"room '{first.name}' is of the kind 'kichen', .* mean 'kitchen'"
+    ):
+        build_home(with_first(kind="kichen"))
+    with pytest.raises(BadSceneError, match="is of the kind 'moon base', which no room is; there are living"):
+        build_home(with_first(kind="moon base"))
+    far = Rect(x_min_m=900.0, y_min_m=900.0, x_max_m=904.0, y_max_m=904.0)
+    with pytest.raises(
+        BadSceneError, match=r"the home is 90\d\.\d+ m x 90\d\.\d+ m; make it smaller, 5000 m2"
+    ):
+        build_home(with_first(area=far))
 
 
 def test_two_objects_in_one_place(home: Home) -> None:

@@ -132,7 +132,7 @@ def toy_chest(style: Style) -> Design:
     pitch_m = width_m / count
     squares: tuple[Part, ...] = tuple(
         box(
-            (depth_m / 2.0 - board_m / 2.0, -width_m / 2.0 + (index + 0.5) * pitch_m, 0.22),
+            (depth_m / 2.0 - 1.5 * board_m, -width_m / 2.0 + (index + 0.5) * pitch_m, 0.22),
             (board_m, pitch_m - 0.06, pitch_m - 0.06),
             stuff,
         )

@@ -44,7 +44,7 @@ def console_table(style: Style) -> Design:
             ),
             cylinder((depth_m / 2.0 - 0.045, 0.0, under_m - apron_m / 2.0 - 0.01), 0.02, 0.02, STEEL),
             *legs((depth_m, width_m, under_m), style.main, inset_m=0.01, thickness_m=0.04),
-            box((0.0, 0.0, 0.16), (depth_m - 0.04, width_m - 0.12, 0.02), style.accent),
+            box((0.0, 0.0, 0.16), (depth_m - 0.04, width_m - 0.09, 0.02), style.accent),
         ),
         surfaces=(surface_at(depth_m, width_m, height_m), wall_behind(depth_m, width_m, height_m)),
     )

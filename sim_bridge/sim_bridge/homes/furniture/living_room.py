@@ -100,7 +100,7 @@ def coffee_table(style: Style) -> Design:
     """A low table with a board for magazines under its top."""
     depth_m, height_m = 0.60, 0.42
     base = table(style, depth_m, height_m, front_m=0.0)
-    board = box((0.0, 0.0, 0.14), (depth_m - 0.18, style.width_m - 0.18, 0.02), style.main)
+    board = box((0.0, 0.0, 0.14), (depth_m - 0.15, style.width_m - 0.15, 0.02), style.main)
     return replace(base, parts=(*base.parts, board))
 
 

@@ -25,10 +25,10 @@ def desk(style: Style) -> Design:
     """A table to work at, with drawers under its left end."""
     depth_m, height_m, drawers_m = 0.65, 0.74, 0.40
     base = table(style, depth_m, height_m, front_m=0.8, hangs=True)
-    unit = chest((0.50, drawers_m, 0.58), style.main, Fronts(columns=1, rows=3, stuff=style.accent))
+    unit = chest((0.50, drawers_m, 0.66), style.main, Fronts(columns=1, rows=3, stuff=style.accent))
     shift_y = style.width_m / 2.0 - 0.10 - drawers_m / 2.0
     moved = tuple(
-        replace(part, centre_m=(part.centre_m[0], part.centre_m[1] + shift_y, part.centre_m[2] + 0.04))
+        replace(part, centre_m=(part.centre_m[0], part.centre_m[1] + shift_y, part.centre_m[2]))
         for part in unit.parts
     )
     return replace(base, parts=(*base.parts, *moved))
@@ -36,7 +36,7 @@ def desk(style: Style) -> Design:
 
 def office_chair(style: Style) -> Design:
     """A seat and a back on a star foot with castors; its back is at -x."""
-    side_m, seat_m, height_m, hub_z, castor_m = style.width_m, 0.48, 0.95, 0.09, 0.06
+    side_m, seat_m, height_m, hub_z, castor_m = style.width_m, 0.48, 0.95, 0.075, 0.06
     half_m = side_m / 2.0
     castors = tuple(
         ball((x, y, castor_m / 2.0), castor_m, BLACK_PLASTIC)
@@ -46,7 +46,7 @@ def office_chair(style: Style) -> Design:
         part
         for sign in (-1, 1)
         for part in (
-            box((0.02, sign * 0.265, 0.56), (0.04, 0.03, 0.20), BLACK_PLASTIC),
+            box((0.02, sign * 0.255, 0.56), (0.04, 0.03, 0.20), BLACK_PLASTIC),
             box((0.03, sign * 0.265, 0.675), (0.26, 0.05, 0.03), BLACK_PLASTIC),
         )
     )
@@ -59,9 +59,9 @@ def office_chair(style: Style) -> Design:
             box((0.0, (half_m + 0.015) / 2.0, hub_z), (0.05, half_m - 0.035, 0.04), style.accent),
             box((0.0, -(half_m + 0.015) / 2.0, hub_z), (0.05, half_m - 0.035, 0.04), style.accent),
             *castors,
-            cylinder((0.0, 0.0, 0.25), 0.06, 0.28, STEEL),
+            cylinder((0.0, 0.0, 0.24), 0.06, 0.30, STEEL),
             box((0.03, 0.0, seat_m - 0.045), (0.48, 0.48, 0.09), style.main),
-            box((-0.24, 0.0, 0.54), (0.03, 0.08, 0.20), BLACK_METAL),
+            box((-0.225, 0.0, 0.54), (0.04, 0.08, 0.20), BLACK_METAL),
             box((-0.25, 0.0, 0.77), (0.07, 0.44, 0.36), style.main),
             *arms,
         ),

@@ -51,6 +51,7 @@ NEEDS: dict[str, RoomNeeds] = {
     "laundry room": RoomNeeds(area_m2=(5.0, 7.0), min_side_m=2.0),
     "storage room": RoomNeeds(area_m2=(5.0, 7.0), min_side_m=2.0),
 }
+ROOM_KINDS = tuple(NEEDS)
 # One room that is the whole home is larger: all the furniture that is searched stands in it.
 STUDIO_NEEDS: dict[str, RoomNeeds] = {
     "living room": RoomNeeds(area_m2=(20.0, 28.0), min_side_m=3.8, max_aspect=1.6),

@@ -1,5 +1,6 @@
 """What is wrong with rooms, doors and windows that a person described: one sentence per mistake."""
 
+import difflib
 import math
 from collections.abc import Sequence
 from itertools import combinations
@@ -7,10 +8,13 @@ from itertools import combinations
 from robustnav_msgs_py.errors import BadSceneError
 from sim_bridge.homes.home import DOOR_HEIGHT_M, WALL_HEIGHT_M, WALL_THICKNESS_M
 from sim_bridge.homes.rect import Rect, Side
+from sim_bridge.homes.rooms.room_programmes import ROOM_KINDS
 from sim_bridge.homes.rooms.wall_lines import Stretch, edge, outer_stretches, shared_stretch
 from sim_bridge.homes.scene import SceneDoor, SceneRoom, SceneWindow
 
 MIN_ROOM_SIDE_M, MAX_ROOM_SIDE_M = 1.0, 50.0
+# The rectangle around all rooms: maps and ways have a cell for every 0.05 m of it.
+MAX_HOME_M2 = 5000.0
 MIN_DOOR_M = 0.6
 # So far may a door's middle be written beside the wall line.
 DOOR_OFF_LINE_M = 0.001
@@ -19,16 +23,28 @@ HALF_WALL_M = WALL_THICKNESS_M / 2.0
 
 
 def check_rooms(rooms: Sequence[SceneRoom]) -> None:
-    """Raise BadSceneError where there is no room, too small a one, or two of one name or place."""
+    """Raise BadSceneError for no rooms, one of an unknown kind or size, and two of one name or place."""
     if not rooms:
         raise BadSceneError("a home needs a room, and this one has none; describe at least one")
     for room in rooms:
+        if room.kind not in ROOM_KINDS:
+            near = difflib.get_close_matches(room.kind, ROOM_KINDS, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(ROOM_KINDS)}"
+            raise BadSceneError(
+                f"room {room.name!r} is of the kind {room.kind!r:.80}, which no room is; {hint}"
+            )
         for side_m in (room.area.width_m, room.area.depth_m):
             if not MIN_ROOM_SIDE_M - SLACK_M <= side_m <= MAX_ROOM_SIDE_M:
                 raise BadSceneError(
                     f"room {room.name!r} is {room.area.width_m:.2f} m x {room.area.depth_m:.2f} m; "
                     f"its sides must be {MIN_ROOM_SIDE_M}..{MAX_ROOM_SIDE_M} m"
                 )
+    width_m = max(room.area.x_max_m for room in rooms) - min(room.area.x_min_m for room in rooms)
+    depth_m = max(room.area.y_max_m for room in rooms) - min(room.area.y_min_m for room in rooms)
+    if width_m * depth_m > MAX_HOME_M2 + SLACK_M:
+        raise BadSceneError(
+            f"the home is {width_m:.2f} m x {depth_m:.2f} m; make it smaller, {MAX_HOME_M2:g} m2 is the most"
+        )
     for first, second in combinations(rooms, 2):
         if first.name == second.name:
             raise BadSceneError(f"two rooms are called {first.name!r}; give each a name of its own")
