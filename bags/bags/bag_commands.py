@@ -14,10 +14,11 @@ from rich.console import Console
 from rich.markup import escape
 
 from bags.redaction_choices import Chat, Images
-from robustnav_msgs_py.errors import BadFileError, GraphError, RobustnavError
+from robustnav_msgs_py.errors import BadFileError, BadParameterError, GraphError, RobustnavError
 
 if TYPE_CHECKING:
     from bags.metrics_table import MetricsRow
+    from robustnav_nodes.benchmarks.detection_tally import Tally
 
 bag_app = typer.Typer(help="Look into recorded runs, measure, repair and share them.", no_args_is_help=True)
 
@@ -62,6 +63,51 @@ def metrics_command(
             write_report(json_file, "bag metrics", **report_content(rows))
     if problems:
         raise BadFileError("; ".join(str(problem) for problem in problems))
+
+
+@bag_app.command("detection")
+def detection_command(
+    bags: Annotated[
+        list[Path],
+        typer.Argument(metavar="BAG...", help="bags with ground truth, of one detector, or .mcap files"),
+    ],
+    statistics: Annotated[
+        Path | None, typer.Option(help="write the file that belief and planner read")
+    ] = None,
+    plots: Annotated[Path | None, typer.Option(help="folder to draw reliability and recall into")] = None,
+    robot: Annotated[str | None, typer.Option(help="namespace, where a bag is of several robots")] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="file for the figures; one that is there is replaced")
+    ] = None,
+) -> None:
+    """How good the detector was: by class and distance, and whether its scores are worth what they say."""
+    from bags.detection_metrics import detection_figures
+    from bags.reader import open_bag
+    from robustnav_nodes.benchmarks.detection_plots import draw
+    from robustnav_nodes.benchmarks.detection_report import tally_content
+    from robustnav_nodes.benchmarks.detection_statistics_file import write_statistics
+    from robustnav_nodes.benchmarks.detection_table import class_table, recall_sentence
+    from robustnav_nodes.benchmarks.report_file import check_writable, write_report
+
+    check_writable(json_file, statistics)
+    if plots is not None and not plots.is_dir():
+        raise BadParameterError(f"--plots {str(plots)!r} is no folder; make it first")
+    tally: Tally | None = None
+    for path in bags:
+        with open_bag(path) as opened:
+            tally = detection_figures(opened, namespace=robot, into=tally)
+    assert tally is not None  # typer asks for one bag at least
+    _console().print(f"{tally.images} images")
+    _console().print(class_table(tally, with_all=True))
+    _say(recall_sentence(tally))
+    if statistics is not None:
+        write_statistics(statistics, tally)
+        _say(f"wrote {statistics}")
+    if plots is not None:
+        draw({"recorded": tally}, plots)
+        _say(f"wrote reliability.png and recall_over_distance.png in {plots}")
+    if json_file is not None:
+        write_report(json_file, "bag detection", **tally_content(tally))
 
 
 @bag_app.command("replay")

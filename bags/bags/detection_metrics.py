@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bags.metrics_settings import settings_of
 from bags.reader import Bag
 from bags.recorded_values import namespace_of, recorded_values
 from robustnav_msgs_py.errors import BadFileError
@@ -18,14 +19,20 @@ UNKNOWN = np.uint32(2**32 - 1)
 
 
 def detection_figures(
-    bag: Bag, *, namespace: str | None = None, score_min: float = 0.0, mount: CameraMount | None = None
+    bag: Bag,
+    *,
+    namespace: str | None = None,
+    score_min: float = 0.0,
+    mount: CameraMount | None = None,
+    into: Tally | None = None,
 ) -> Tally:
     """What the detector said of each image beside what the image showed, matched by their stamps.
 
     score_min: precision and recall are of scores from here up; the node has dropped lower ones already.
-    mount: how the camera sits on the robot, to tell distances on the floor. A bag knows boxes, not pixels:
-    an object counts as large as its box times the part of it that is visible. Raises BadFileError where
-    ground truth or detections were not recorded, or were never of the same image.
+    mount: how the camera sits on the robot, to tell distances on the floor; None: as the bag's manifest
+    says. into: the tally of other bags, to which this one is added. A bag knows boxes, not pixels: an object
+    counts as large as its box times the part of it that is visible. Raises BadFileError where ground truth or
+    detections were not recorded, were never of the same image, or are of other classes than those in `into`.
     """
     if namespace is None:
         namespace = namespace_of(bag, "detections")
@@ -46,11 +53,18 @@ def detection_figures(
             f"{bag.path} has no {', '.join(missing)}: the detector can be measured only in a bag with ground "
             "truth, such as the simulator's"
         )
-    tally = Tally(names["detections/labels"], score_min)
+    tally = Tally(names["detections/labels"], score_min) if into is None else into
+    if tally.labels != names["detections/labels"]:
+        raise BadFileError(
+            f"{bag.path} was recorded with a detector of other classes than the bags before it: measure it "
+            "by itself"
+        )
+    mount = mount or settings_of(bag.manifest, namespace).mount
+    before = tally.images
     for stamp_ns in sorted(seen.keys() & said.keys()):
-        truth = _in_names(seen[stamp_ns], names["truth/labels"], tally.labels, mount or CameraMount())
+        truth = _in_names(seen[stamp_ns], names["truth/labels"], tally.labels, mount)
         tally.add(truth, _known(said[stamp_ns], names["truth/labels"], tally.labels))
-    if tally.images == 0:
+    if tally.images == before:
         raise BadFileError(f"{bag.path} has ground truth and detections, but never of the same image")
     return tally
 

@@ -28,6 +28,7 @@ def commands(bag: Path, scratch: Path) -> list[list[object]]:
     return [
         ["info", bag],
         ["metrics", bag],
+        ["detection", bag],
         ["report", bag, "--out", scratch / "a.html"],
         ["redact", bag, "--out", scratch / "shared"],
         ["repair", bag, "--out", scratch / "whole"],

@@ -14,6 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.benchmarks.detection_command import detection_command
+from robustnav_nodes.benchmarks.home_command import homes_command
 from robustnav_nodes.benchmarks.instruction_command import instruction_command
 from robustnav_nodes.benchmarks.recorder_command import recorder_command
 from robustnav_nodes.benchmarks.variant_command import variants_command
@@ -30,6 +31,7 @@ bench_app = typer.Typer(
 bench_app.command("variants")(variants_command)
 bench_app.command("detection")(detection_command)
 bench_app.command("instruction")(instruction_command)
+bench_app.command("homes")(homes_command)
 bench_app.command("recorder")(recorder_command)
 
 JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file too")]

@@ -66,7 +66,7 @@ def detection_command(
     if plots is not None:
         from robustnav_nodes.benchmarks.detection_plots import draw
 
-        draw(found, plots)
+        draw({measured.degradation: measured.tally for measured in found}, plots)
     if json_file is not None:
         settings = {"homes": homes, "poses": poses, "score_min": found[0].tally.score_min, **values}
         write_report(json_file, "detection", seed=seed, settings=settings, **report_content(found))
@@ -93,6 +93,7 @@ def _degradations(wanted: str) -> list[str]:
 
 def _show(console: Console, found: "Sequence[Measured]") -> None:
     from robustnav_nodes.benchmarks.detection_report import overall_row
+    from robustnav_nodes.benchmarks.detection_table import class_table, part, recall_sentence
 
     rows = [overall_row(measured) for measured in found]
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
@@ -112,7 +113,7 @@ def _show(console: Console, found: "Sequence[Measured]") -> None:
         table.add_row(
             row["degradation"],
             str(row["objects"]),
-            *(_part(row[name]) for name in ("map50", "precision", "recall", "f1", "calibration_error")),
+            *(part(row[name]) for name in ("map50", "precision", "recall", "f1", "calibration_error")),
             _placed(row),
             f"{row['image_ms']:.1f}",
         )
@@ -120,31 +121,14 @@ def _show(console: Console, found: "Sequence[Measured]") -> None:
     console.print(
         "[dim]ECE: calibration error; off: of right detections, from the object's centre; ms: an image[/]\n"
     )
-    _show_classes(console, found[0])
+    console.print(class_table(found[0].tally))
     if rows[0]["instance_top1"] is not None:
         console.print(
             f"this one among five of its class: {rows[0]['instance_top1']:.2f} of "
             f"{rows[0]['instance_trials']} times right"
         )
-    shares = found[0].tally.recall_by_range()
-    told = ", ".join(f"{share.low:g} m {share.recall:.2f}" for share in shares)
-    console.print(f"recall from a distance of {told}")
-
-
-def _show_classes(console: Console, measured: "Measured") -> None:
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    table.add_column("", no_wrap=True)
-    for name in ("objects", "AP@0.5", "precision", "recall", "F1"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for row in measured.tally.class_scores()[1:]:
-        parts = (_part(value) for value in (row.map50, row.precision, row.recall, row.f1))
-        table.add_row(row.label, str(row.objects), *parts)
-    console.print(table)
+    console.print(recall_sentence(found[0].tally))
 
 
 def _placed(row: dict[str, Any]) -> str:
     return "–" if row["place_error_m_p90"] is None else f"{row['place_error_m_p90']:.2f} m"
-
-
-def _part(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"

@@ -10,7 +10,7 @@ from robustnav_msgs_py.values import Float64
 from robustnav_nodes.benchmarks.detection_bench import Measured
 from robustnav_nodes.benchmarks.detection_instances import top1
 from robustnav_nodes.benchmarks.detection_scores import calibration_error
-from robustnav_nodes.benchmarks.detection_tally import ALL, ClassScore
+from robustnav_nodes.benchmarks.detection_tally import ALL, ClassScore, Tally
 
 
 def report_content(found: Sequence[Measured]) -> dict[str, Any]:
@@ -27,18 +27,31 @@ def overall_row(measured: Measured) -> dict[str, Any]:
 
     image_ms is a median; place_error_m: from where a right detection was placed to the object's centre.
     """
-    tally, bins = measured.tally, measured.tally.score_bins()
     return {
-        **_row(tally.class_scores()[0], measured),
+        **_row(measured.tally.class_scores()[0], measured),
+        **tally_figures(measured.tally),
+        "instance_trials": len(measured.choices),
+        "image_ms_p95": _percentile(measured.image_ms, 95.0),
+        "place_error_m_p50": _percentile(measured.place_error_m, 50.0),
+        "place_error_m_p90": _percentile(measured.place_error_m, 90.0),
+    }
+
+
+def tally_content(tally: Tally) -> dict[str, Any]:
+    """`rows`: that of all classes, then a row for each class; without what a bag does not tell."""
+    overall, *classes = ({"class": row.pop("label"), **row} for row in map(asdict, tally.class_scores()))
+    return {"rows": [{**overall, **tally_figures(tally)}, *classes]}
+
+
+def tally_figures(tally: Tally) -> dict[str, Any]:
+    """How far scores are from what they are worth, and recall by distance and visible part."""
+    bins = tally.score_bins()
+    return {
         "images": tally.images,
         "calibration_error": calibration_error(bins) if bins else None,
         "reliability": [asdict(row) for row in bins],
         "recall_by_range": [asdict(row) for row in tally.recall_by_range()],
         "recall_by_visible_part": [asdict(row) for row in tally.recall_by_visible_part()],
-        "instance_trials": len(measured.choices),
-        "image_ms_p95": _percentile(measured.image_ms, 95.0),
-        "place_error_m_p50": _percentile(measured.place_error_m, 50.0),
-        "place_error_m_p90": _percentile(measured.place_error_m, 90.0),
     }
 
 
