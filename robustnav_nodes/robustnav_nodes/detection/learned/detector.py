@@ -46,13 +46,17 @@ class LearnedDetector:
         return Boxes(box_px=box_px[real], score=found.score[real], label=found.label[real])
 
     def embed(self, image: ColorImage, box_px: Float32) -> Float32:
-        """The looks of what is in boxes [n, 4]: unit vectors [n, EMBEDDING]; products are likenesses."""
+        """The looks of what is in boxes [n, 4]: unit vectors [n, EMBEDDING]; products are likenesses.
+
+        What is mirrored looks the same: both ways of seeing it count alike.
+        """
         if len(box_px) == 0:
             return np.zeros((0, EMBEDDING), dtype=np.float32)
         with torch.inference_mode():
             which = torch.zeros(len(box_px), dtype=torch.int64)
             pieces = patches(_as_image(image), which, np.asarray(box_px, dtype=np.float32))
-            looks = self._look(pieces.contiguous(memory_format=torch.channels_last))
+            both = torch.cat([pieces, pieces.flip(3)]).contiguous(memory_format=torch.channels_last)
+            looks = functional.normalize(self._look(both).unflatten(0, (2, -1)).sum(dim=0), dim=1)
         return np.asarray(looks.numpy(), dtype=np.float32)
 
 

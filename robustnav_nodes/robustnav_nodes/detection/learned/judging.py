@@ -16,7 +16,7 @@ from robustnav_nodes.detection.evaluation import (
     share_found,
 )
 from robustnav_nodes.detection.learned.detector import LearnedDetector
-from robustnav_nodes.detection.learned.instance_matcher import height_cost
+from robustnav_nodes.detection.learned.instance_matcher import height_cost, whole_height_m
 from robustnav_nodes.detection.learned.training_pictures import ObjectTable, PictureSet
 
 # What a detector is asked to find: so many pixels, so much of itself.
@@ -108,6 +108,7 @@ def look_alike_trials(
     )
     boxes = _boxes_of_objects(found, pictures)
     height_m = (boxes[:, 3] - boxes[:, 1]) * table.ahead_m / np.float32(focal_px)
+    height_m = whole_height_m(boxes, height_m, pictures.pixels.shape[1])
     looks = _looks(detector, pictures, boxes, near)
     views: dict[tuple[int, int], dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
     for row in np.flatnonzero(near).tolist():
