@@ -11,7 +11,7 @@ from robustnav_nodes.instruction.common_sense import anything_goes
 from robustnav_nodes.instruction.episodes import ErrorEpisode
 from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
 from robustnav_nodes.instruction.metrics import auc
-from robustnav_nodes.instruction.model_file import LearnedModel, load_model, save_model
+from robustnav_nodes.instruction.model_file import SHIPPED, LearnedModel, load_model, save_model
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import SeenObject, Trajectory, Viewpoint
 from robustnav_nodes.instruction.verdict import ErrorModel
@@ -170,3 +170,31 @@ def test_a_model_of_other_features_says_so(learned: LearnedModel) -> None:
 def test_a_protocol_that_was_not_trained_is_named(learned: LearnedModel) -> None:
     with pytest.raises(BadFileError, match="'matched', only for uniform"):
         learned.model("matched")
+
+
+def test_a_long_walk_keeps_its_turns() -> None:
+    """Of 200 places 60 are looked at; what was turned at the others is not lost."""
+    from robustnav_nodes.instruction.mention_model import MAX_PLACES, thinned
+
+    long = Trajectory(
+        viewpoints=tuple(
+            Viewpoint(x_m=k, y_m=0.0, z_m=0.0, yaw_in_rad=1.5 * (k > 77), yaw_out_rad=1.5 * (k >= 77))
+            for k in range(200)
+        )
+    )
+    short = thinned(long)
+    assert len(short) == MAX_PLACES
+    assert sum(at.turn_rad for at in short.viewpoints) == pytest.approx(1.5)
+
+
+def test_what_comes_along_is_whole_and_small() -> None:
+    read = load_model(SHIPPED)
+    assert SHIPPED.stat().st_size < 20e6
+    one = said_walks(homes=1, walks=1, seed=3)[0]
+    for protocol in PROTOCOLS:
+        for blind in (False, True):
+            verdict = read.model(protocol, blind=blind).judge(one.trajectory, one.tokens)
+            assert 0.0 < verdict.error_score < 1.0
+    iedl = read.iedl()
+    assert iedl is not None
+    assert 0.0 < iedl.judge(one.trajectory, one.tokens).error_score < 1.0

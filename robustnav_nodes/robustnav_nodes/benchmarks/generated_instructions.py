@@ -26,6 +26,8 @@ from robustnav_nodes.instruction.pack_errors import TRAIN, write_errors
 from robustnav_nodes.instruction.pack_writing import PackWriter
 
 VAL_SEEN, VAL_UNSEEN = "val_seen", "val_unseen"
+# Homes of seeds from here on are not trained in.
+UNSEEN_SEED = 500_000
 SPLITS = (TRAIN, VAL_SEEN, VAL_UNSEEN)
 # A hallway joins rooms from five on: walks of several rooms, with doors at both sides.
 ROOMS = (5, 6, 7, 8, 9, 10)
@@ -34,7 +36,9 @@ _HOMES_A_JOB = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GenerationPlan:
-    """`homes` homes of the seeds from `seed` on are trained in, the next `unseen` are for val_unseen alone.
+    """`homes` homes of the seeds from `seed` on are trained in; `unseen` others are for val_unseen alone.
+
+    Those are of the seeds from UNSEEN_SEED + `seed` on, which nobody trains in.
 
     `walks` of each home in train and in val_unseen, `walks_seen` more of those for val_seen; each is told by
     `writers`.
@@ -49,7 +53,12 @@ class GenerationPlan:
 
     @property
     def last_seed(self) -> int:
-        return self.seed + self.homes + self.unseen - 1
+        """Of the homes that are trained in."""
+        return self.seed + self.homes - 1
+
+    def seed_of(self, home: int) -> int:
+        """Of the home that is `home` numbers after the first."""
+        return self.seed + home + (0 if home < self.homes else UNSEEN_SEED - self.homes)
 
     def splits_of(self, home: int) -> dict[str, int]:
         """How many walks of each split the home has that is `home` numbers after the first."""
@@ -62,7 +71,7 @@ def survey_home(plan: GenerationPlan, home: int) -> Survey | None:
     """Build and survey one home of the plan; None where its seed gives no home that holds together."""
     from sim_bridge.homes.generator import generate_home
 
-    seed = plan.seed + home
+    seed = plan.seed_of(home)
     try:
         built = generate_home(seed, rooms=ROOMS[seed % len(ROOMS)])
     except BadSceneError:
@@ -107,7 +116,8 @@ def write_generated_pack(
             lines.add(done)
             advanced(_HOMES_A_JOB)
     for split in SPLITS:
-        if not lines.walks[split] and (split != VAL_UNSEEN or plan.unseen) and plan.homes:
+        wanted = {TRAIN: plan.homes, VAL_SEEN: plan.homes * plan.walks_seen, VAL_UNSEEN: plan.unseen}[split]
+        if wanted and not lines.walks[split]:
             raise BadFileError(f"no walk of {split} came out of seed {plan.seed}; ask for more homes")
     counts = lines.write(writer, plan)
     write_errors(writer, [split for split in SPLITS if lines.walks[split]], plan.seed)

@@ -1,6 +1,7 @@
 """The models that `bench instruction` compares."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
 
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_nodes.instruction.baselines import EntityGrounding, RandomGuess
@@ -14,25 +15,33 @@ NAMES = ("random", "grounding", "surprise", "blind", "iedl", "mentions")
 def contestants_of(
     learned: LearnedModel, protocol: Protocol, seed: int, wanted: Sequence[str] | None = None
 ) -> dict[str, ErrorModel]:
-    """Judges by name, baselines first; IEDL is missing where the file does not hold it.
+    """Judges by name, baselines first; IEDL is missing where the file does not hold it, and without torch.
 
     Raises BadParameterError for a name that is none, or that the file does not hold.
     """
     unknown = [name for name in wanted or () if name not in NAMES]
     if unknown:
         raise BadParameterError(f"there is no model {unknown[0]!r}; there are {', '.join(NAMES)}")
-    models: dict[str, ErrorModel | None] = {
-        "random": RandomGuess(seed),
-        "grounding": EntityGrounding(),
-        "surprise": learned.surprise,
-        "blind": learned.model(protocol, blind=True),
-        "iedl": learned.iedl(),
-        "mentions": learned.model(protocol),
+    makers: dict[str, Callable[[], ErrorModel | None]] = {
+        "random": lambda: RandomGuess(seed),
+        "grounding": EntityGrounding,
+        "surprise": lambda: learned.surprise,
+        "blind": lambda: learned.model(protocol, blind=True),
+        "iedl": learned.iedl if _has_torch() else lambda: None,
+        "mentions": lambda: learned.model(protocol),
     }
-    if wanted and any(models[name] is None for name in wanted):
-        raise BadParameterError(
-            "the model file holds no iedl: train one with `robustnav train iedl --minutes 25`"
-        )
-    return {
-        name: model for name, model in models.items() if model is not None and (not wanted or name in wanted)
-    }
+    found: dict[str, ErrorModel] = {}
+    for name in NAMES:
+        model = makers[name]() if not wanted or name in wanted else None
+        if model is not None:
+            found[name] = model
+        elif wanted and name in wanted:
+            raise BadParameterError(
+                "iedl cannot be judged: it needs torch (pip install 'robustnav[learn]') and a model file "
+                "that holds it (`robustnav train iedl --minutes 25`)"
+            )
+    return found
+
+
+def _has_torch() -> bool:
+    return find_spec("torch") is not None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from robustnav_msgs_py.errors import BadParameterError
 from robustnav_nodes.benchmarks.generated_instructions import (
+    UNSEEN_SEED,
     VAL_UNSEEN,
     GenerationPlan,
     generated_instructions,
@@ -19,8 +20,6 @@ from robustnav_nodes.instruction.pack_errors import TRAIN
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 from robustnav_nodes.instruction.wording import learn_wording
 
-# Homes of seeds from here on are not trained on (`robustnav train iedl` begins at its --seed).
-UNSEEN_SEED = 500_000
 BENCH_HOMES = 40
 
 Episodes = dict[Protocol, dict[str, list[ErrorEpisode]]]
@@ -79,7 +78,7 @@ def bench_episodes(
         for protocol in protocols:
             found[protocol] = _put_in(instructions, pack.common_sense(), protocol, seed)
     else:
-        plan = GenerationPlan(seed=UNSEEN_SEED + seed, homes=0, unseen=BENCH_HOMES)
+        plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
         instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
         common_sense = derive_common_sense(instructions)
         for protocol in protocols:

@@ -6,7 +6,8 @@ was seen.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +92,7 @@ class MentionModel:
         if not mentions:
             return np.zeros(0)
         if self._last is None or self._last[0] is not trajectory:
-            scene = scene_of(_thinned(trajectory))
+            scene = scene_of(thinned(trajectory))
             self._last = (trajectory, scene, self._knowledge.places.evidence(scene))
         rows = mention_rows(self._last[1], self._last[2], tokens, mentions, self._knowledge)
         if rows.names != self._features:
@@ -101,8 +102,11 @@ class MentionModel:
         return self._scorer.mention_odds(rows.values, [m.kind for m in mentions], rows.blind)
 
 
-def _thinned(trajectory: Trajectory) -> Trajectory:
+def thinned(trajectory: Trajectory) -> Trajectory:
+    """At most MAX_PLACES viewpoints of a walk, evenly spread."""
     if len(trajectory) <= MAX_PLACES:
         return trajectory
-    kept = np.linspace(0, len(trajectory) - 1, MAX_PLACES).round().astype(int)
-    return Trajectory(viewpoints=tuple(trajectory.viewpoints[k] for k in kept))
+    kept = [trajectory.viewpoints[int(k)] for k in np.linspace(0, len(trajectory) - 1, MAX_PLACES).round()]
+    # what was turned at the places between is turned at the one before them
+    turned = [replace(here, yaw_out_rad=there.yaw_in_rad) for here, there in pairwise(kept)]
+    return Trajectory(viewpoints=(*turned, kept[-1]))

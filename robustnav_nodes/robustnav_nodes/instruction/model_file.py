@@ -6,6 +6,7 @@ IEDL needs torch, ours does not: a robot that runs ours never imports it.
 import contextlib
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -119,7 +120,7 @@ def load_model(path: Path) -> LearnedModel:
             f"cannot read the model {str(path)!r}: {error.strerror or error}; `robustnav train iedl --data "
             "PACK` makes one"
         ) from error
-    except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise BadFileError(f"{str(path)!r} is no model of instruction errors: {error}") from error
 
 

@@ -3,6 +3,7 @@
 import gzip
 import hashlib
 import json
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -137,7 +138,7 @@ class PackFolder:
             )
         try:
             return (gzip.decompress(content) if name.endswith(".gz") else content).decode("utf-8")
-        except (OSError, EOFError, UnicodeDecodeError) as error:
+        except (OSError, EOFError, UnicodeDecodeError, zlib.error) as error:
             raise BadFileError(f"{str(path)!r} cannot be unpacked: {error}") from error
 
     def _read_sums(self) -> dict[str, str]:

@@ -90,6 +90,9 @@ class R2rPack:
         }
         self._visible: dict[str, tuple[str, ...]] = {}
         for row in self._folder.rows("graph.jsonl.gz"):
+            unknown = [name for name in row.texts("viewpoints") if name not in self._places]
+            if unknown:
+                raise row.wrong("viewpoints", unknown[0], "viewpoints of viewpoints.jsonl.gz")
             self._visible.update(_visible(row))
         self._paths: dict[str, dict[int, PackPath]] = {}
 
