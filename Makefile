@@ -44,7 +44,13 @@ demo: $(RUN_READY) ## run a search in a simulated home; ARGS="--scenario follow 
 
 test: $(DEV_READY) ## run the tests; ARGS="-m slow" or ARGS="tests/belief -k entropy"
 	$(call say,Running the tests)
+ifdef ARGS
 	@$(BIN)/python -m pytest $(ARGS)
+else
+	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --ignore tests/graph
+	$(call say,Running the tests of whole graphs: they need every core)
+	@$(BIN)/python -m pytest tests/graph
+endif
 
 bench: $(RUN_READY) ## compare the planners on scenes made by seed; ARGS="--suite hard-noisy --episodes 200"
 	@$(BIN)/robustnav bench search $(or $(ARGS),--episodes 40)

@@ -1,6 +1,5 @@
 """The benchmark of the recorder counts each message of its load, and finds those that are missing."""
 
-import os
 import sys
 from pathlib import Path
 
@@ -28,7 +27,7 @@ def test_a_small_load_is_recorded_whole(tmp_path: Path) -> None:
     assert (row.missing, row.dropped) == (0, 0)
     assert 5.0 < row.mb_per_s < 20.0
     assert 400.0 < row.messages_per_s < 700.0
-    assert 0.0 < row.cpu_share < len(os.sched_getaffinity(0))  # it has threads, and has just started
+    assert row.cpu_share > 0.0
     assert 30.0 < row.rss_mb < 300.0
 
 
