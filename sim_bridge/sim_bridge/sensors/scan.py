@@ -19,7 +19,7 @@ RANGE_MIN_M = 0.05
 
 BOX, CYLINDER, BALL = SHAPE_CODE[Shape.BOX], SHAPE_CODE[Shape.CYLINDER], SHAPE_CODE[Shape.BALL]
 ALONG_X, ALONG_Y, UPRIGHT = (int(axis) for axis in Axis)
-# The code's column in `part_look`.
+# The column of `part_look` that tells along which axis a cylinder stands.
 AXIS = 3
 
 
@@ -78,8 +78,8 @@ def cast(
         if lying or shape == BALL:
             # The cut is narrower than the part, but for along a lying cylinder's axis.
             share = math.sqrt(1.0 - above * above)
-            half_x *= 1.0 if axis == ALONG_X else share
-            half_y *= 1.0 if axis == ALONG_Y else share
+            half_x *= 1.0 if lying and axis == ALONG_X else share
+            half_y *= 1.0 if lying and axis == ALONG_Y else share
         # From the laser to the middle of the part: in `map`, and then as the part has its axes.
         dx = x + cos * centre[0] - sin * centre[1] - place_m[0]
         dy = y + sin * centre[0] + cos * centre[1] - place_m[1]
