@@ -12,6 +12,7 @@ from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.benchmarks.r2r_building import build_r2r_pack
 from robustnav_nodes.benchmarks.r2r_objects import angular_box, bearing, locate
 from robustnav_nodes.benchmarks.r2r_sources import BoxedObject, SourceFolders, read_connectivity
+from robustnav_nodes.instruction.pack_lines import PackFolder
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 
 SAID = "Walk out of the bedroom past the bed. Turn right and stop in the kitchen next to the sink."
@@ -111,7 +112,8 @@ def test_a_pack_from_sources(folders: SourceFolders, tmp_path: Path) -> None:
     assert bed.bearing_rad == pytest.approx(math.atan2(1.5, 1.0) - first.yaw_in_rad, abs=0.02)
     assert bed.range_m == pytest.approx(math.hypot(1.0, 1.5, 0.8), abs=0.05)
     assert pack.instructions("train")[0].tokens[-1] == "."
-    assert pack.alignments("val_seen")[0][1] == [(8, 0, 1), (4, 1, 2)]
+    (line, _) = PackFolder(tmp_path / "pack").rows("r2r_val_seen.jsonl.gz")
+    assert line.items("sub_instructions")[0] == [[CHUNKS[0][0], 0, 1], [CHUNKS[0][1], 1, 2]]
     assert pack.episodes("val_seen", "uniform", "direction")
 
 

@@ -61,11 +61,10 @@ def test_frames(folder: Path) -> None:
     assert sum(third.rooms) == pytest.approx(1.0)
 
 
-def test_instructions_and_alignment(folder: Path) -> None:
+def test_instructions_and_common_sense(folder: Path) -> None:
     pack = R2rPack(folder)
     said = pack.instructions("train")
     assert [one.key for one in said] == ["0_0", "1_0"]
-    assert pack.alignments("val_seen")[0][1] == [(2, 0, 1), (2, 1, 2)]
     assert "kitchen" in pack.common_sense().rooms["bedroom"]
 
 

@@ -14,8 +14,12 @@ MAX_SEED = 1_000_000_000
 def instructions_command(
     out: Annotated[Path, typer.Option(help="folder to write the pack into; must not hold one")],
     homes: Annotated[int, typer.Option(min=1, max=100_000, help="how many homes to train in")] = 300,
-    unseen: Annotated[int | None, typer.Option(min=0, help="other homes; default: a fifth as many")] = None,
-    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="of the first home")] = 1,
+    unseen: Annotated[
+        int | None, typer.Option(min=0, max=100_000, help="other homes; default: a fifth as many")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=MAX_SEED, help="decides homes, which no other seed has, and errors")
+    ] = 1,
     walks: Annotated[int, typer.Option(min=1, max=100, help="through each home")] = 12,
     walks_seen: Annotated[int, typer.Option(min=0, max=100, help="more of them, for val_seen")] = 2,
     writers: Annotated[int, typer.Option(min=1, max=8, help="who each tell a walk")] = 2,

@@ -200,16 +200,14 @@ def _fit_network(x: Float64, counts: Float64, seed: int, epochs: int) -> tuple[F
     inputs = torch.from_numpy(x.astype(np.float32))
     targets = torch.from_numpy(counts.astype(np.float32))
     batch = 512
-    steps = epochs * (len(x) // batch + 1)
+    steps = epochs * -(-len(x) // batch)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=3e-3, total_steps=steps)
     order = torch.Generator().manual_seed(seed)
     network.train()
     for _ in range(epochs):
         shuffled = torch.randperm(len(x), generator=order)
-        for start in range(0, len(x) + 1 - (len(x) % batch == 0), batch):
+        for start in range(0, len(x), batch):
             rows = shuffled[start : start + batch]
-            if not len(rows):
-                continue
             logs = torch.log_softmax(network(inputs[rows]), dim=1)
             loss = -(targets[rows] * logs).sum() / targets[rows].sum().clamp(min=1.0)
             optimiser.zero_grad()

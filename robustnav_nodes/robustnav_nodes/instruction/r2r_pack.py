@@ -127,21 +127,6 @@ class R2rPack:
             for number, text in enumerate(path.instructions)
         ]
 
-    def alignments(self, split: str) -> list[tuple[Instruction, list[tuple[int, int, int]]]]:
-        """Instructions with people's alignment, (words, first, last viewpoint) a chunk; not for train."""
-        found = []
-        for row in self._folder.rows(f"r2r_{split}.jsonl.gz"):
-            path = self.paths(split)[row.whole("path_id")]
-            for number, chunks in enumerate(row.items("sub_instructions")):
-                said = Instruction(
-                    key=f"{path.path_id}_{number}",
-                    group=path.scan,
-                    tokens=tokenized(path.instructions[number]),
-                    trajectory=path.trajectory,
-                )
-                found.append((said, [(len(words), first, last) for words, first, last in chunks]))
-        return found
-
     def has_episodes(self, split: str, protocol: Protocol) -> bool:
         """Whether the pack holds errors of every type for a split."""
         return all(self._folder.has(_error_file(split, protocol, name)) for name in ERROR_TYPES)
