@@ -147,6 +147,21 @@ def test_two_rays_meet_and_one_does_not(folders: SourceFolders) -> None:
             '"visible_pos": []',
             "0 views",
         ),
+        (BOXES, '{"7": {', '{"seven": {', "objects by their numbers"),
+        (BOXES, '"bbox2d": [[', '"bbox2d": [["left", ', "four numbers"),
+        (BOXES, '"visible_pos": [13]', '"visible_pos": [36]', "below 36"),
+        (
+            "fg/data/FGR2R_val_seen.json",
+            '"chunk_view": [[[1, 2]',
+            '"chunk_view": [[[1]',
+            "a first and a last",
+        ),
+        ("fg/data/FGR2R_val_seen.json", "[[['walk'", "[[[7", "lists .chunks. of words"),
+        ("fg/data/FGR2R_val_seen.json", '"heading": 0.5', '"heading": 1' + "0" * 400, "a finite number"),
+        ("sim/connectivity/one_connectivity.json", '"visible": [false, ', '"visible": [', "each of the 4"),
+        ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11\n", "", "6 pictures"),
+        ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "hall", "room label"),
+        ("mp/metadata/category_mapping.tsv", "mpcat40", "mpcat", "the columns raw_category and mpcat40"),
         ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "13", "room label"),
     ],
 )
@@ -160,7 +175,7 @@ def test_a_bad_source_is_named(
         build_r2r_pack(folders, tmp_path / "pack", ["train", "val_seen"], seed=1)
 
 
-@pytest.mark.parametrize("gone", ["fg", "sim", "mp"])
+@pytest.mark.parametrize("gone", ["fg", "sim", "mp", "reverie"])
 def test_a_missing_source_is_named(folders: SourceFolders, tmp_path: Path, gone: str) -> None:
     (tmp_path / gone).rename(tmp_path / "elsewhere")
     with pytest.raises(BadFileError, match=gone):

@@ -54,7 +54,7 @@ def train_models(
         model = _taken_up(kept, plan, len(instructions))
         say(f"took up {kept}")
     else:
-        model = train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
+        model = _learned(instructions, common_sense, plan, say)
         model = replace(model, card={**model.card, "data": plan.data})
         save_model(kept, model)
     curve: list[EpochFigures] = []
@@ -64,6 +64,19 @@ def train_models(
     kept.unlink(missing_ok=True)
     checkpoint.unlink(missing_ok=True)
     return model, curve
+
+
+def _learned(
+    instructions: Sequence[Instruction], common_sense: CommonSense, plan: TrainingPlan, say: Say
+) -> LearnedModel:
+    try:
+        return train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
+    except ValueError as error:  # of numpy or scikit-learn: no row at all, or all of one class
+        homes = len({one.group for one in instructions})
+        raise BadParameterError(
+            f"{len(instructions)} instructions of {homes} homes are too few to learn from: some kind of word "
+            f"is never wrong, or never right, in a part of them ({error})"
+        ) from error
 
 
 def _taken_up(kept: Path, plan: TrainingPlan, instructions: int) -> LearnedModel:
