@@ -13,6 +13,7 @@ from robustnav_nodes.benchmarks.generated_instructions import (
     generated_instructions,
     write_generated_pack,
 )
+from robustnav_nodes.benchmarks.instruction_statistics import pack_statistics
 from robustnav_nodes.cli import app
 from robustnav_nodes.instruction.episodes import ERROR_TYPES
 from robustnav_nodes.instruction.injection import PROTOCOLS
@@ -114,3 +115,11 @@ def test_statistics_command(folder: Path, tmp_path: Path) -> None:
     for row in rows:
         assert row["episodes"] == 0 or row["errors_per_episode"] == sum(1 for n in row["kinds"].values() if n)
     assert rows[0]["thesis"]["episodes"] == 3218
+
+
+def test_more_can_be_put_in_where_nothing_has_to_make_sense(folder: Path) -> None:
+    likely, any_at_all = (
+        sum(row.statistics.episodes for row in pack_statistics(folder, ["train"], common_sense=common_sense))
+        for common_sense in (True, False)
+    )
+    assert any_at_all > likely > 0

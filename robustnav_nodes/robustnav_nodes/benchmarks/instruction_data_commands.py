@@ -74,6 +74,9 @@ def r2r_command(
 def statistics_command(
     pack: Annotated[Path, typer.Argument(metavar="PACK", help="folder of a pack, ours or of real walks")],
     split: Annotated[list[str] | None, typer.Option(help="only this one; can be repeated")] = None,
+    common_sense: Annotated[
+        bool, typer.Option(help="wrong rooms adjoin the right ones, wrong objects share rooms with them")
+    ] = True,
     json_file: Annotated[
         Path | None, typer.Option("--json", help="write the figures to this file too")
     ] = None,
@@ -85,7 +88,7 @@ def statistics_command(
     from robustnav_nodes.benchmarks.report_file import check_writable, write_report
 
     check_writable(json_file)
-    rows = list(pack_statistics(pack, split or []))
+    rows = list(pack_statistics(pack, split or [], common_sense=common_sense))
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for column in ("protocol", "split", "type"):
         table.add_column(column, no_wrap=True)
@@ -109,6 +112,7 @@ def statistics_command(
         write_report(
             json_file,
             "instruction-statistics",
+            common_sense=common_sense,
             rows=[
                 {
                     "protocol": row.protocol,

@@ -11,7 +11,7 @@ from robustnav_nodes.benchmarks.generated_instructions import (
     generated_instructions,
 )
 from robustnav_nodes.benchmarks.instruction_bench import chosen_pairs
-from robustnav_nodes.instruction.common_sense import CommonSense, derive_common_sense
+from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
 from robustnav_nodes.instruction.injection import Injector, Protocol, error_episodes
 from robustnav_nodes.instruction.pack_errors import TRAIN
@@ -51,31 +51,41 @@ def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
 
 
 def bench_episodes(
-    data: Path | None, split: str, protocols: Sequence[Protocol], at_most: int | None, seed: int
+    data: Path | None,
+    split: str,
+    protocols: Sequence[Protocol],
+    at_most: int | None,
+    seed: int,
+    *,
+    common_sense: bool = True,
 ) -> Episodes:
     """Clean and perturbed episodes by protocol and type of error, `at_most` of each.
 
-    Those of the pack where it holds any, else put in anew by the seed. Raises BadFileError for a pack that is
+    Of each protocol those of the pack where it holds any, else put in anew by the seed; always so without
+    `common_sense`: any room may then replace any, and any object. Raises BadFileError for a pack that is
     none, or has no such split.
     """
-    found: Episodes = {}
     pack = R2rPack(data) if data is not None else None
-    if pack is not None and all(pack.has_episodes(split, protocol) for protocol in protocols):
-        for protocol in protocols:
+    found: Episodes = {}
+    for protocol in protocols:
+        if pack is not None and common_sense and pack.has_episodes(split, protocol):
             found[protocol] = {name: pack.episodes(split, protocol, name) for name in ERROR_TYPES}
-    elif pack is not None:
-        instructions = pack.instructions(split)
-        for protocol in protocols:
-            found[protocol] = _put_in(instructions, pack.common_sense(), protocol, seed)
-    else:
-        plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
-        instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
-        common_sense = derive_common_sense(instructions)
-        for protocol in protocols:
-            found[protocol] = _put_in(instructions, common_sense, protocol, seed)
+    missing = [protocol for protocol in protocols if protocol not in found]
+    if missing:
+        if pack is None:
+            plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
+            instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
+        else:
+            instructions = pack.instructions(split)
+        if not common_sense:
+            likely = anything_goes()
+        else:
+            likely = derive_common_sense(instructions) if pack is None else pack.common_sense()
+        for protocol in missing:
+            found[protocol] = episodes_put_in(instructions, likely, protocol, seed)
     return {
-        protocol: {name: chosen_pairs(part, at_most, seed) for name, part in by_type.items()}
-        for protocol, by_type in found.items()
+        protocol: {name: chosen_pairs(part, at_most, seed) for name, part in found[protocol].items()}
+        for protocol in protocols
     }
 
 
@@ -83,7 +93,7 @@ def _workers() -> int:
     return len(os.sched_getaffinity(0))
 
 
-def _put_in(
+def episodes_put_in(
     instructions: Sequence[Instruction], common_sense: CommonSense, protocol: Protocol, seed: int
 ) -> dict[str, list[ErrorEpisode]]:
     """Matched by the wording of the other half of the homes: by their own, what stands there fits best."""
