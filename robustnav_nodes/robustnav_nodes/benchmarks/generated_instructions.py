@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -33,6 +32,7 @@ SPLITS = (TRAIN, VAL_SEEN, VAL_UNSEEN)
 # A hallway joins rooms from five on: walks of several rooms, with doors at both sides.
 ROOMS = (5, 6, 7, 8, 9, 10)
 _HOMES_A_JOB = 4
+_TOLD_EVERY = 20  # homes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,15 +82,29 @@ def survey_home(plan: GenerationPlan, home: int) -> Survey | None:
     return survey(dwelling, seed, plan.splits_of(home), plan.writers, seed)
 
 
-def generated_instructions(plan: GenerationPlan, split: str, workers: int) -> Iterator[Instruction]:
-    """The instructions of one split, home by home, without files between; in so many processes."""
+def generated_instructions(
+    plan: GenerationPlan, split: str, workers: int, say: Callable[[str], object] = lambda told: None
+) -> Iterator[Instruction]:
+    """The instructions of one split, home by home, without files between; in so many processes.
+
+    `say` is told now and then how many homes are made.
+    """
     homes = [home for home in range(plan.homes + plan.unseen) if plan.splits_of(home).get(split)]
     instructions_at = partial(_instructions_at, plan, split)
     if workers == 1:
-        yield from chain.from_iterable(map(instructions_at, homes))
+        yield from _told(map(instructions_at, homes), len(homes), say)
         return
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from chain.from_iterable(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB))
+        yield from _told(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB), len(homes), say)
+
+
+def _told(
+    made: Iterable[list[Instruction]], homes: int, say: Callable[[str], object]
+) -> Iterator[Instruction]:
+    for number, of_home in enumerate(made, start=1):
+        yield from of_home
+        if number % _TOLD_EVERY == 0 or number == homes:
+            say(f"made {number} of {homes} homes and what is said in them")
 
 
 def _instructions_at(plan: GenerationPlan, split: str, home: int) -> list[Instruction]:

@@ -85,7 +85,15 @@ def instruction_command(
     asked = {name: contestants_of(learned, name, seed, wanted) for name in _protocols(protocol)}
     began = time.monotonic()
     console.print("[dim]reading the walks and what was said[/]")
-    found = bench_episodes(data, suite, tuple(asked), episodes, seed, common_sense=common_sense)
+    found = bench_episodes(
+        data,
+        suite,
+        tuple(asked),
+        episodes,
+        seed,
+        common_sense=common_sense,
+        say=lambda told: console.print(f"[dim]{told}[/]"),
+    )
     rows: list[InstructionRow] = []
     pairs: list[PairRow] = []
     calibrations: list[Calibration] = []

@@ -1,7 +1,7 @@
 """What models of instruction errors learn from and are judged on: a pack, or homes made for it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,7 +32,9 @@ class Lessons:
     name: str
 
 
-def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
+def lessons_of(
+    data: Path | None, split: str, homes: int, seed: int, say: Callable[[str], object] = lambda told: None
+) -> Lessons:
     """Of a pack, or of `homes` homes made for `seed`. Raises BadFileError for a pack that is none."""
     if data is not None:
         pack = R2rPack(data)
@@ -42,7 +44,7 @@ def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
             name=f"{data.name}, {split}",
         )
     plan = GenerationPlan(seed=seed, homes=homes, unseen=0)
-    instructions = list(generated_instructions(plan, TRAIN, _workers()))
+    instructions = list(generated_instructions(plan, TRAIN, _workers(), say))
     return Lessons(
         instructions=instructions,
         common_sense=derive_common_sense(instructions),
@@ -58,6 +60,7 @@ def bench_episodes(
     seed: int,
     *,
     common_sense: bool = True,
+    say: Callable[[str], object] = lambda told: None,
 ) -> Episodes:
     """Clean and perturbed episodes by protocol and type of error, `at_most` of each.
 
@@ -74,7 +77,7 @@ def bench_episodes(
     if missing:
         if pack is None:
             plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
-            instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
+            instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers(), say))
         else:
             instructions = pack.instructions(split)
         if not common_sense:
