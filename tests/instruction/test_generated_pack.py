@@ -21,7 +21,7 @@ from robustnav_nodes.instruction.pack_lines import PackFolder
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 from robustnav_nodes.instruction.tokens import tokenized
 
-PLAN = GenerationPlan(seed=4200, homes=2, unseen=1, walks=5, walks_seen=2, writers=2)
+PLAN = GenerationPlan(seed=4200, homes=1, unseen=1, walks=5, walks_seen=2, writers=2)
 
 
 @pytest.fixture(scope="module")
