@@ -60,11 +60,11 @@ def walk_sides(scene: Scene) -> WalkSides:
     with_both = np.tanh((turn[1:-3] + turn[2:-2] + turn[3:-1]) / _SOFT_RAD)
     odd = [around, with_next[:, None], with_both[:, None]]
     even = [np.abs(around), index[:, None] == 0, index[:, None] == 1, index[:, None] >= count - 1]
-    x_axis, y_axis = np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
+    cos, sin = np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
     for steps in (1, 2, _FAR_STEPS):
         way = scene.xyz_m[np.minimum(index + steps, count - 1), :2] - scene.xyz_m[:, :2]
-        odd.append(np.tanh((x_axis * way[:, 1] - y_axis * way[:, 0]) / _SOFT_M)[:, None])
-        even.append(np.tanh((x_axis * way[:, 0] + y_axis * way[:, 1]) / _SOFT_M)[:, None])
+        odd.append(np.tanh((cos * way[:, 1] - sin * way[:, 0]) / _SOFT_M)[:, None])
+        even.append(np.tanh((cos * way[:, 0] + sin * way[:, 1]) / _SOFT_M)[:, None])
     return WalkSides(odd=np.hstack(odd), even=np.hstack(even).astype(float))
 
 
