@@ -72,7 +72,7 @@ def test_the_digest_is_of_all_that_is_learned_from() -> None:
 
 def test_words_of_which_none_can_be_wrong_are_too_few(tmp_path: Path) -> None:
     dull = [replace(one, tokens=tokenized("go on and on " * 5)) for one in SAID]
-    with pytest.raises(BadParameterError, match="18 instructions of 3 homes are too few to learn from"):
+    with pytest.raises(BadParameterError, match="too few to learn from"):
         train(tmp_path / "m.npz", dull)
 
 

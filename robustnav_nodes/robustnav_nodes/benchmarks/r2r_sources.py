@@ -77,6 +77,9 @@ def sub_instructions(row: Row) -> list[list[tuple[list[str], int, int]]] | None:
         raise row.wrong(
             "chunk_view", spans, "a first and a last viewpoint for each chunk of each instruction"
         )
+    count = len(row.items("path"))
+    if any(not 1 <= first <= last <= count for views in spans for first, last in views):
+        raise row.wrong("chunk_view", spans, f"viewpoints from 1 to {count}, the first before the last")
     # a few instructions of the public file have more chunks than views: those are left out
     return [
         [(chunk, first - 1, last - 1) for chunk, (first, last) in zip(chunks, views, strict=False)]

@@ -35,7 +35,7 @@ def train_iedl_command(
     ] = EPOCHS,
     minutes: Annotated[
         float | None,
-        typer.Option(min=0.0, help="of wall time, after which no epoch of IEDL begins; default: any"),
+        typer.Option(min=0.1, help="of wall time, after which no epoch of IEDL begins; default: any"),
     ] = None,
     width: Annotated[int, typer.Option(min=16, max=1024, help="of IEDL; the thesis has 768")] = 256,
     resume: Annotated[bool, typer.Option("--resume", help="take up a training that was stopped")] = False,

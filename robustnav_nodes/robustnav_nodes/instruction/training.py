@@ -56,7 +56,7 @@ def train_models(
         model = _taken_up(kept, plan, digest)
         say(f"took up {kept}")
     else:
-        model = _learned(instructions, common_sense, plan, say)
+        model = train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
         model = replace(model, card={**model.card, "data": plan.data, "digest": digest})
         save_model(kept, model)
     curve: list[EpochFigures] = []
@@ -80,19 +80,6 @@ def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense) ->
     for likely in (common_sense.rooms, common_sense.objects):
         found.update(repr(sorted((name, tuple(others)) for name, others in likely.items())).encode())
     return found.hexdigest()
-
-
-def _learned(
-    instructions: Sequence[Instruction], common_sense: CommonSense, plan: TrainingPlan, say: Say
-) -> LearnedModel:
-    try:
-        return train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
-    except ValueError as error:  # of numpy or scikit-learn: no row at all, or all of one class
-        homes = len({one.group for one in instructions})
-        raise BadParameterError(
-            f"{len(instructions)} instructions of {homes} homes are too few to learn from: some kind of word "
-            f"is never wrong, or never right, in a part of them ({error})"
-        ) from error
 
 
 def _taken_up(kept: Path, plan: TrainingPlan, digest: str) -> LearnedModel:
