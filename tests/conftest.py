@@ -14,6 +14,10 @@ import pytest
 if TYPE_CHECKING:
     from tests.bench import Bench
 
+# Test processes share the cores already: threads of OpenMP that wait for each other would make learning tests
+# several times as slow.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 # Fast DDS uses UDP ports from 7400 + 250 * domain; these domains stay below Linux' ephemeral ports.
 DOMAINS = range(20, 100)
 LOCKSTEP_PATIENCE_S = 120.0

@@ -102,7 +102,7 @@ class Simulation:
             FrameDropper(parameters.frame_drop, parameters.seed),
             FrameDelay[Shot](parameters.frame_delay_s, parameters.frame_jitter_s, parameters.seed),
         )
-        self._laser = Laser(self.stage.world, parameters.scan_rays, parameters.scan_range_m)
+        self._laser = Laser(self.stage.scenery, parameters.scan_rays, parameters.scan_range_m)
         self._move_rng = _stream(parameters, MOVE_STREAM)
         self._steps = 0
         self._command = STANDSTILL
@@ -314,6 +314,7 @@ class Simulation:
         self.drive.replace_obstacles(self.stage.obstacles)
         self.follower.replan(self._planner())
         self._camera.scenery = self.stage.scenery
+        self._laser.scenery = self.stage.scenery
 
     def _is_silent(self, sensor: Sensor) -> bool:
         return self.faults.is_silent(sensor, self.now_ns)

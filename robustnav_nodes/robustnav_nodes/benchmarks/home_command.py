@@ -95,31 +95,41 @@ def _say(console: Console, episode: "HomeEpisode") -> None:
 
 
 def _show(console: Console, rows: "Sequence[HomeRow]") -> None:
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    for name in ("planner", "camera", "statistics"):
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    names = ("planner", "camera", "statistics")
+    varied = [name for name in names if len({getattr(row, name) for row in rows}) > 1]
+    for name in varied:
         table.add_column(name, no_wrap=True)
-    for name in ("searches", "SR", "SPL", "wrong stops", "not found", "false alarms", "steps", "SR gain"):
+    for name in ("n", "SR", "SPL", "wrong", "lost", "alarms", "steps", "gain"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
         table.add_row(
-            row.planner,
-            row.camera,
-            row.statistics,
+            *(getattr(row, name) for name in varied),
             str(row.episodes),
             _span(row.sr, row.sr_ci),
-            _span(row.spl, row.spl_ci),
-            _span(row.wrong_stop, row.wrong_stop_ci),
-            f"{row.not_found:.2f}",
-            _span(row.false_alarms, row.false_alarms_ci),
+            _short(row.spl),
+            _short(row.wrong_stop),
+            _short(row.not_found),
+            _short(row.false_alarms),
             "–" if row.steps is None else f"{row.steps:.0f}",
             _span(row.sr_gain, row.sr_gain_ci),
         )
     console.print(table)
-    console.print("[dim]in brackets: 95 %; gain: over the first planner of the same camera, same homes[/]")
+    console.print(
+        "[dim]n: searches; wrong: stops where the target is not; lost: not found in time;\n"
+        "alarms: false ones, a search; ranges: 95 %; gain: in SR, over the first planner\n"
+        "with the same camera in the same homes[/]"
+    )
 
 
 def _span(value: float, interval: tuple[float, float]) -> str:
-    return f"{value:.2f} ({interval[0]:.2f} to {interval[1]:.2f})"
+    return f"{_short(value)} {_short(interval[0])}–{_short(interval[1])}"
+
+
+def _short(value: float) -> str:
+    """Two digits, without the zero before them."""
+    text = f"{value:.2f}"
+    return text.replace("0.", ".") if abs(value) < 1.0 else text
 
 
 def _as_data(episode: "HomeEpisode") -> dict[str, object]:

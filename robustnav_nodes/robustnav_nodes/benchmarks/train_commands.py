@@ -16,6 +16,8 @@ train_app.command("iedl")(train_iedl_command)
 MAX_SEED = 2**31 - 1
 MINUTES = 36.0
 TEST_HOMES, TEST_PICTURES = 100, 12
+# Of the usual learning rate, where weights are there to go on from.
+RATE_OF_TRAINED = 0.25
 
 
 @train_app.command("detector")
@@ -26,11 +28,31 @@ def detector_command(
     minutes: Annotated[float, typer.Option(min=0.1, max=1000.0, help="in all, with rendering")] = MINUTES,
     seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="decides all that is random")] = 1,
     homes: Annotated[int, typer.Option(min=1, max=90_000, help="how many homes to learn from")] = 800,
+    begin_with: Annotated[
+        Path | None, typer.Option(help="weights to go on from (.npz); default: from nothing")
+    ] = None,
+    only: Annotated[
+        str, typer.Option(help="detector or look: the one to train; the other stays as in --begin-with")
+    ] = "",
+    rate: Annotated[
+        float | None,
+        typer.Option(
+            min=0.001,
+            max=10.0,
+            help="of the usual learning rate; default: 1 from nothing, else 0.25",
+            show_default=False,
+        ),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="take up a training that was stopped")] = False,
 ) -> None:
-    """Train the detector from nothing, on pictures rendered for it (7 MB a home beside the weights)."""
+    """Train the detector on pictures rendered for it (7 MB a home beside the weights)."""
     _require_torch()
-    from robustnav_nodes.detection.learned.training import TrainingPlan, train_detector
+    from robustnav_nodes.detection.learned.training import NETWORKS, TrainingPlan, train_detector
+    from robustnav_nodes.detection.learned.weights import load_weights
+
+    if only and only not in NETWORKS:
+        raise BadParameterError(f"--only {only!r} is no network; there are {', '.join(NETWORKS)}")
+    begun = None if begin_with is None else load_weights(begin_with)
 
     out.parent.mkdir(parents=True, exist_ok=True)
     bar = Progress(
@@ -46,7 +68,14 @@ def detector_command(
             bar.start_task(tasks[name])
             bar.update(tasks[name], completed=share, word=word)
 
-        plan = TrainingPlan(minutes=minutes, seed=seed, homes=homes)
+        plan = TrainingPlan(
+            minutes=minutes,
+            seed=seed,
+            homes=homes,
+            networks=(only,) if only else NETWORKS,
+            begin_with=begun,
+            rate=rate if rate is not None else 1.0 if begun is None else RATE_OF_TRAINED,
+        )
         train_detector(out, plan, resume=resume, report=report)
     Console(highlight=False).print(f"{out}: judge it with `robustnav train judge --weights {out}`")
 
@@ -75,8 +104,9 @@ def judge_command(
 
 def _require_torch() -> None:
     try:
+        import cv2  # noqa: F401
         import torch  # noqa: F401
     except ImportError as error:
         raise BadParameterError(
-            "training needs torch, which is not installed; install it with pip install 'robustnav[learn]'"
+            f"training needs {error.name}, which is not installed: pip install 'robustnav[learn]'"
         ) from error

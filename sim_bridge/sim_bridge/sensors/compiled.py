@@ -1,7 +1,8 @@
-"""How the renderer's hot loops are compiled with numba.
+"""How the sensors' hot loops are compiled with numba.
 
 numba keeps compiled code beside the source and checks only the file of the function itself for changes, so
-compiled functions that call each other live in one file: `rasterizer` finds surfaces, `textures` paints them.
+compiled functions that call each other live in one file: `rasterizer` finds surfaces, `textures` paints
+them, `scan` casts the laser's rays.
 """
 
 from collections.abc import Callable

@@ -27,6 +27,7 @@ FIRST_OTHER = 1 << 20
 
 _FACE_OF_SIDE = {Side.WEST: WEST, Side.EAST: EAST, Side.SOUTH: SOUTH, Side.NORTH: NORTH}
 
+SHAPE_CODE = {shape: code for code, shape in enumerate(Shape)}
 SUBSTANCE_CODE = {substance: code for code, substance in enumerate(Substance)}
 PATTERN_CODE = {pattern: code for code, pattern in enumerate(Pattern)}
 
@@ -78,6 +79,8 @@ class Mesh(NamedTuple):
     triangle_face: Int32  # [triangles]
     triangle_part: Int32  # [triangles]
     part_item: Int32  # [parts]
+    part_shape: Int32  # [parts]
+    part_half_m: Float64  # [parts, 3]: its half extents
     part_look: Int32  # [parts, 5]: substance, pattern, longest axis, axis of a cylinder, variant 0..255
     part_colour: Float64  # [parts, 6]: red, green, blue, and those of the pattern
     part_frame: Float64  # [parts, 4]: its centre, and the period of its pattern
@@ -229,6 +232,7 @@ def _gap_m(first: Rect, second: Rect) -> float:
 def _mesh(items: tuple[Item, ...]) -> Mesh:
     vertices, triangles, firsts, faces = [], [], [], []
     part_item, part_triangles, looks, colours, frames = [], [], [], [], []
+    shapes, halves = [], []
     item_vertices, item_triangles = [0], [0]
     for row, item in enumerate(items):
         count, triangle_count = 0, 0
@@ -236,10 +240,13 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
             hull = hull_of(part)
             seen = ~np.isin(hull.faces, item.unseen) if item.unseen else slice(None)
             own = hull.triangles[seen]
-            vertices.append(hull.vertices * (np.array(part.size_m) / 2.0) + part.centre_m)
+            half = np.array(part.size_m) / 2.0
+            vertices.append(hull.vertices * half + part.centre_m)
             triangles.append(own + count)
             faces.append(hull.faces[seen])
             part_item.append(row)
+            shapes.append(SHAPE_CODE[part.shape])
+            halves.append(half)
             part_triangles.append(len(own))
             looks.append(_look(part, at + 7 * row))
             colours.append((*part.material.rgb, *second_colour(part.material)))
@@ -260,6 +267,8 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
         triangle_face=np.concatenate([np.zeros(0, dtype=np.int32), *faces]).astype(np.int32),
         triangle_part=np.repeat(np.arange(len(part_item), dtype=np.int32), part_triangles),
         part_item=np.array(part_item, dtype=np.int32),
+        part_shape=np.array(shapes, dtype=np.int32),
+        part_half_m=np.array(halves, dtype=np.float64).reshape(-1, 3),
         part_look=np.array(looks, dtype=np.int32).reshape(-1, 5),
         part_colour=np.array(colours, dtype=np.float64).reshape(-1, 6),
         part_frame=np.array(frames, dtype=np.float64).reshape(-1, 4),

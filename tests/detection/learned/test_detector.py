@@ -8,7 +8,7 @@ torch = pytest.importorskip("torch")
 from robustnav_msgs_py.values import ColorImage, Float32  # noqa: E402
 from robustnav_nodes.detection.learned.decoding import decode  # noqa: E402
 from robustnav_nodes.detection.learned.detector import LearnedDetector  # noqa: E402
-from robustnav_nodes.detection.learned.instance_matcher import InstanceMatcher, height_cost, whole_height_m  # noqa: E402
+from robustnav_nodes.detection.learned.instance_matcher import InstanceMatcher  # noqa: E402
 from robustnav_nodes.detection.learned.network import EMBEDDING  # noqa: E402
 from robustnav_nodes.detection.learned.weights import Weights  # noqa: E402
 
@@ -88,24 +88,11 @@ def test_equal_looks_are_told_apart_by_height_where_it_is_known(untrained: Weigh
     matcher = InstanceMatcher(LearnedDetector(untrained), seen, boxes[0], height_m=0.10)
     known = matcher.scores(seen, boxes, np.array([0.125, 0.10], dtype=np.float32))
     assert known[1] > known[0]
-    unknown = matcher.scores(seen, boxes, np.array([np.nan, 0.10], dtype=np.float32))
-    assert unknown[0] == pytest.approx(unknown[1], abs=1e-4)
-
-
-def test_a_box_that_is_cut_at_an_edge_has_no_height(untrained: Weights) -> None:
-    seen, boxes = two_things(RED, RED)
-    cut = boxes.copy()
-    cut[0, 3] = 100.0
-    heights = np.array([0.2, 0.1], dtype=np.float32)
-    known = whole_height_m(cut, heights, 100)
-    assert np.isnan(known[0])
-    assert known[1] == heights[1]
-    whole, half = (
-        InstanceMatcher(LearnedDetector(untrained), seen, own[0], height_m=0.2).scores(seen, boxes, heights)
-        for own in (boxes, cut)
-    )
-    assert whole[1] < whole[0] - 0.01  # another height
-    assert half[1] > whole[1]  # of a reference that is cut, the height says nothing
+    unknown = matcher.scores(seen, boxes, np.array([np.nan, np.nan], dtype=np.float32))
+    assert unknown == pytest.approx(1.0, abs=1e-4)
+    never_known = InstanceMatcher(LearnedDetector(untrained), seen, boxes[0])
+    heights = np.array([0.125, 0.10], dtype=np.float32)
+    assert never_known.scores(seen, boxes, heights) == pytest.approx(1.0, abs=1e-4)
 
 
 def test_what_is_mirrored_looks_the_same(untrained: Weights) -> None:
@@ -115,9 +102,3 @@ def test_what_is_mirrored_looks_the_same(untrained: Weights) -> None:
     other = np.array([[40, 10, 70, 50]], dtype=np.float32)
     detector = LearnedDetector(untrained)
     assert float(detector.embed(seen, box)[0] @ detector.embed(mirrored, other)[0]) > 1.0 - 1e-4
-
-
-def test_a_height_costs_more_the_farther_it_is_off_up_to_a_limit() -> None:
-    cost = height_cost(np.array([0.1, 0.12, 0.08, 5.0, 0.0], dtype=np.float32), 0.1)
-    assert cost[0] == 0.0
-    assert 0.0 < cost[1] < cost[2] < cost[3] == cost[4]

@@ -92,5 +92,15 @@ def test_generalised_iou_by_hand() -> None:
 def test_looks_that_lie_together_cost_less_than_looks_that_are_mixed() -> None:
     apart = torch.tensor([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]])
     right, mixed = torch.tensor([0, 0, 1, 1]), torch.tensor([0, 1, 0, 1])
-    assert float(look_loss(apart, right)) < 1e-3
-    assert float(look_loss(apart, mixed)) > 5.0
+    one_class = torch.zeros(4, dtype=torch.int64)
+    assert float(look_loss(apart, right, one_class)) < 1e-3
+    assert float(look_loss(apart, mixed, one_class)) > 5.0
+
+
+def test_the_own_class_counts_more_than_the_others() -> None:
+    embeddings = torch.tensor([[1.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
+    look = torch.tensor([0, 0, 1, 1])
+    same_class = float(look_loss(embeddings, look, torch.zeros(4, dtype=torch.int64)))
+    other_class = float(look_loss(embeddings, look, look))
+    assert other_class == pytest.approx(np.log(3.0))  # told from three, and from nothing in its class
+    assert same_class == pytest.approx(2.0 * np.log(3.0))

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
-from robustnav_msgs_py.values import Pose2D
+from robustnav_msgs_py.values import LaserScan, Pose2D
 from sim_bridge.homes.floor_plan import OCCUPIED, floor_plan
 from sim_bridge.parameters import SimParameters
 from sim_bridge.sensors.camera import CameraFrame, map_from_optical
 from sim_bridge.sensors.rasterizer import NOTHING
+from sim_bridge.sensors.scan import LASER_HEIGHT_M
 from sim_bridge.sensors.scenery import FIRST_OTHER
 from sim_bridge.sensors.visibility import RAYS_PER_AXIS
 from sim_bridge.simulation import Simulation
@@ -24,6 +25,7 @@ REACH_M = 20.0
 # What covers so many pixels is large enough for its box to be compared.
 LARGE_PX = 60
 STEP_M = 0.005
+TOLERANCE_M, HAIRS_M = 0.02, (-0.003, -0.001, 0.001, 0.003)
 
 
 @pytest.fixture(scope="module", params=["easy", "medium", "hard"])
@@ -129,6 +131,37 @@ def test_objects_are_where_the_model_projects_their_corners(sim: Simulation, fre
     assert checked > 30
 
 
+def heading_of_rays(pose: Pose2D, scan: LaserScan) -> np.ndarray:
+    """The heading of each ray of a scan in `map`."""
+    return pose.yaw_rad + scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
+
+
+def ranges_of_rays(sim: Simulation, pose: Pose2D, headings: np.ndarray, aside_m: float) -> np.ndarray:
+    """What PyBullet finds along rays in the laser's plane that begin `aside_m` to the left of the laser."""
+    ahead = np.stack([np.cos(headings), np.sin(headings), np.zeros(len(headings))], axis=1)
+    left = np.stack([-ahead[:, 1], ahead[:, 0], ahead[:, 2]], axis=1)
+    starts = np.array((pose.x_m, pose.y_m, LASER_HEIGHT_M)) + aside_m * left
+    reach_m = sim.parameters.scan_range_m
+    shares, bodies = sim.stage.world.cast(starts, starts + reach_m * ahead)
+    return np.where(bodies == NOTHING, np.inf, shares * reach_m)
+
+
+def test_the_laser_meets_what_rays_meet(sim: Simulation, free_poses: FreePoses) -> None:
+    """To within 2 cm; where a ray grazes an edge, between what PyBullet meets a hair to either side."""
+    clear = grazing = 0
+    for pose in free_poses(sim.home, 12, seed=7):
+        scan = sim._laser.take(pose, 0)
+        headings = heading_of_rays(pose, scan)
+        met_m = ranges_of_rays(sim, pose, headings, 0.0)
+        far = np.isinf(met_m) & np.isinf(scan.ranges_m)
+        same = far | (np.abs(np.where(far, 0.0, met_m) - np.where(far, 0.0, scan.ranges_m)) < TOLERANCE_M)
+        beside_m = [ranges_of_rays(sim, pose, headings[~same], aside_m) for aside_m in HAIRS_M]
+        assert (np.min(beside_m, axis=0) - TOLERANCE_M <= scan.ranges_m[~same]).all()
+        assert (scan.ranges_m[~same] <= np.max(beside_m, axis=0) + TOLERANCE_M).all()
+        clear, grazing = clear + int(same.sum()), grazing + int((~same).sum())
+    assert grazing < 0.002 * clear
+
+
 def test_the_laser_meets_walls_where_the_map_shows_them(sim: Simulation, free_poses: FreePoses) -> None:
     """Along each ray that ends at a wall, the first occupied cell of a plan without furniture."""
     plan = floor_plan(dataclasses.replace(sim.home, furniture=()))
@@ -136,8 +169,7 @@ def test_the_laser_meets_walls_where_the_map_shows_them(sim: Simulation, free_po
     errors = []
     for pose in free_poses(sim.home, 12, seed=6):
         scan = sim._laser.take(pose, 0)
-        angles = pose.yaw_rad + scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
-        for range_m, angle in zip(scan.ranges_m.tolist(), angles.tolist(), strict=True):
+        for range_m, angle in zip(scan.ranges_m.tolist(), heading_of_rays(pose, scan).tolist(), strict=True):
             cos, sin = math.cos(angle), math.sin(angle)
             end = (pose.x_m + range_m * cos, pose.y_m + range_m * sin)
             if not math.isfinite(range_m) or not any(wall.holds(*end) for wall in walls):

@@ -7,6 +7,7 @@ from torch.nn import functional
 from robustnav_msgs_py.values import ColorImage, Float32
 from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.learned.decoding import decode
+from robustnav_nodes.detection.learned.extents import extents
 from robustnav_nodes.detection.learned.network import EMBEDDING, MULTIPLE
 from robustnav_nodes.detection.learned.patches import patches
 from robustnav_nodes.detection.learned.weights import Weights
@@ -45,19 +46,25 @@ class LearnedDetector:
         real = (box_px[:, 2:] - box_px[:, :2] >= SIDE_MIN_PX).all(axis=1)
         return Boxes(box_px=box_px[real], score=found.score[real], label=found.label[real])
 
-    def embed(self, image: ColorImage, box_px: Float32) -> Float32:
+    def embed(self, image: ColorImage, box_px: Float32, metres_per_px: Float32 | None = None) -> Float32:
         """The looks of what is in boxes [n, 4]: unit vectors [n, EMBEDDING]; products are likenesses.
 
-        What is mirrored looks the same: both ways of seeing it count alike.
+        metres_per_px [n]: depth over focal length, NaN where not known. What is mirrored looks the same: both
+        ways of seeing it count alike.
         """
-        if len(box_px) == 0:
+        count = len(box_px)
+        if count == 0:
             return np.zeros((0, EMBEDDING), dtype=np.float32)
+        box_px = np.asarray(box_px, dtype=np.float32)
+        if metres_per_px is None:
+            metres_per_px = np.full(count, np.nan, dtype=np.float32)
+        pixels = np.ascontiguousarray(image.pixels)
+        size = torch.from_numpy(extents(box_px, metres_per_px, *pixels.shape[:2]))
         with torch.inference_mode():
-            which = torch.zeros(len(box_px), dtype=torch.int64)
-            pieces = patches(_as_image(image), which, np.asarray(box_px, dtype=np.float32))
+            pieces = patches(pixels[None], [0] * count, box_px)
             both = torch.cat([pieces, pieces.flip(3)]).contiguous(memory_format=torch.channels_last)
-            looks = functional.normalize(self._look(both).unflatten(0, (2, -1)).sum(dim=0), dim=1)
-        return np.asarray(looks.numpy(), dtype=np.float32)
+            looks = self._look(both, size.repeat(2, 1)).unflatten(0, (2, -1)).sum(dim=0)
+        return np.asarray(functional.normalize(looks, dim=1).numpy(), dtype=np.float32)
 
 
 def _as_image(image: ColorImage) -> torch.Tensor:

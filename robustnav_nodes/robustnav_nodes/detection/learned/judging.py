@@ -16,7 +16,7 @@ from robustnav_nodes.detection.evaluation import (
     share_found,
 )
 from robustnav_nodes.detection.learned.detector import LearnedDetector
-from robustnav_nodes.detection.learned.instance_matcher import height_cost, whole_height_m
+from robustnav_nodes.detection.learned.network import EMBEDDING
 from robustnav_nodes.detection.learned.training_pictures import ObjectTable, PictureSet
 
 # What a detector is asked to find: so many pixels, so much of itself.
@@ -91,14 +91,13 @@ def look_alike_trials(
     detector: LearnedDetector,
     found: list[Boxes],
     pictures: PictureSet,
-    focal_px: float,
     rng: np.random.Generator,
 ) -> tuple[float, float, int]:
     """How often the reference is recognised among five of its class in its home, each seen from somewhere.
 
     The reference is one view of the object; the candidates are another view of it and one of each of four
     others, all within ALIKE_RANGE_M and visible enough. A view's box is the detector's where it found the
-    object, else the true one. Gives the share by look alone, that with the known height, and the trials.
+    object, else the true one. Gives the share by look alone, that with known depth, and the trials.
     """
     table = pictures.objects
     near = (
@@ -107,13 +106,13 @@ def look_alike_trials(
         & (table.visible_fraction >= COUNTS_FRACTION)
     )
     boxes = _boxes_of_objects(found, pictures)
-    height_m = (boxes[:, 3] - boxes[:, 1]) * table.ahead_m / np.float32(focal_px)
-    height_m = whole_height_m(boxes, height_m, pictures.pixels.shape[1])
-    looks = _looks(detector, pictures, boxes, near)
+    unknown = np.full(len(table), np.nan, dtype=np.float32)
+    by_look = _looks(detector, pictures, boxes, unknown, near)
+    by_both = _looks(detector, pictures, boxes, table.ahead_m / table.focal_px, near)
     views: dict[tuple[int, int], dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
     for row in np.flatnonzero(near).tolist():
         views[int(table.home[row]), int(table.label[row])][int(table.instance[row])].append(row)
-    by_look, by_both = [], []
+    right: tuple[list[bool], list[bool]] = ([], [])
     for objects in views.values():
         if len(objects) < ALIKE:
             continue
@@ -123,13 +122,11 @@ def look_alike_trials(
             reference, again = rng.choice(own, 2, replace=False).tolist()
             others = rng.choice([other for other in objects if other != target], ALIKE - 1, replace=False)
             rows = np.array([again, *(int(rng.choice(objects[other])) for other in others.tolist())])
-            likeness = looks[rows].astype(np.float64) @ looks[reference]
-            by_look.append(first_is_right(likeness, 0))
-            cost = height_cost(height_m[rows], float(height_m[reference]))
-            by_both.append(first_is_right(likeness - cost, 0))
-    if not by_look:
+            for found_right, looks in zip(right, (by_look, by_both), strict=True):
+                found_right.append(first_is_right(looks[rows].astype(np.float64) @ looks[reference], 0))
+    if not right[0]:
         return float("nan"), float("nan"), 0
-    return float(np.mean(by_look)), float(np.mean(by_both)), len(by_look)
+    return float(np.mean(right[0])), float(np.mean(right[1])), len(right[0])
 
 
 def _boxes_of_objects(found: list[Boxes], pictures: PictureSet) -> Float32:
@@ -144,15 +141,15 @@ def _boxes_of_objects(found: list[Boxes], pictures: PictureSet) -> Float32:
     return boxes
 
 
-def _looks(detector: LearnedDetector, pictures: PictureSet, boxes: Float32, wanted: Bool) -> Float32:
+def _looks(
+    detector: LearnedDetector, pictures: PictureSet, boxes: Float32, metres_per_px: Float32, wanted: Bool
+) -> Float32:
     table = pictures.objects
-    looks = np.zeros(
-        (len(table), detector.embed(image_of(pictures, 0), boxes[:1]).shape[1]), dtype=np.float32
-    )
+    looks = np.zeros((len(table), EMBEDDING), dtype=np.float32)
     for number in np.unique(table.picture[wanted]).tolist():
         rows = np.arange(len(table))[table.rows_of(number)]
         rows = rows[wanted[rows]]
-        looks[rows] = detector.embed(image_of(pictures, number), boxes[rows])
+        looks[rows] = detector.embed(image_of(pictures, number), boxes[rows], metres_per_px[rows])
     return looks
 
 

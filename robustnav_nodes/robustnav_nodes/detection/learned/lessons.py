@@ -1,5 +1,6 @@
 """What the networks see in each step: batches of pictures, and of pieces of them."""
 
+from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,8 +8,10 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Float32
 from robustnav_nodes.detection.learned.augmentation import KEPT_MIN, lit_otherwise, mirrored_and_zoomed
+from robustnav_nodes.detection.learned.extents import extents
 from robustnav_nodes.detection.learned.gradient_workers import LossOfBatch
 from robustnav_nodes.detection.learned.losses import detection_loss, look_loss, targets
 from robustnav_nodes.detection.learned.network import STRIDE, DetectorNetwork, LookNetwork
@@ -20,10 +23,19 @@ BATCH = 8
 TAUGHT_PX, TAUGHT_FRACTION = 40, 0.30
 # Of the pictures without an object, only some are looked at.
 EMPTY_SHARE = 0.3
-# A look lesson has so many classes, looks of each, and pieces of each look.
-CLASSES, LOOKS, PIECES = 6, 4, 4
-LOOK_PX, LOOK_FRACTION, LOOK_SIDE_PX = 120, 0.45, 9.0
-BOX_SHIFT, BOX_STRETCH = 0.08, 0.10
+# A look lesson has so many classes, looks of each, and pieces of each look; the looks of a class have so many
+# colours, substances, patterns and sizes between them, as look-alikes in a home have.
+CLASSES, LOOKS, PIECES, ALIKE_CHOICES = 6, 5, 3, 2
+LOOK_PX, LOOK_FRACTION, LOOK_SIDE_PX = 100, 0.45, 8.0
+# How far off a detector is, as parts of a side.
+BOX_SHIFT, BOX_STRETCH = 0.05, 0.08
+# Depth is known in this part of the lessons, to within this (its logarithm).
+P_DEPTH, DEPTH_OFF = 0.7, 0.03
+# Which part of an object's look its size is; the last one.
+SIZE = 3
+
+# Colour, substance, pattern and size as numbers.
+_Look = tuple[int, ...]
 
 
 def as_images(pixels: NDArray[np.uint8]) -> torch.Tensor:
@@ -66,10 +78,10 @@ class DetectionLessons:
 
 
 class LookLessons:
-    """Batches for the looks: objects of few classes, several looks of each, seen several times each.
+    """Batches for the looks: of few classes several looks that are hard to tell apart, each seen repeatedly.
 
-    Two objects have one look where class, colour, substance and pattern are the same, in whichever home; size
-    is not told from a piece of an image.
+    Two objects have one look where class, colour, substance, pattern and size are the same, in any home. In
+    part of the batches nobody knows how far things are; size is no part of the look then.
     """
 
     def __init__(self, pictures: PictureSet, network: LookNetwork) -> None:
@@ -82,46 +94,65 @@ class LookLessons:
             & (table.visible_fraction >= LOOK_FRACTION)
             & (sides.min(axis=1) >= LOOK_SIDE_PX)
         )
-        keys = np.column_stack([table.label, table.look[:, :3]])
-        _, self._look = np.unique(keys, axis=0, return_inverse=True)
-        rows = np.flatnonzero(clear)
-        ordered = rows[np.argsort(self._look[rows], kind="stable")]
-        firsts = np.unique(self._look[ordered], return_index=True)[1]
-        views = np.split(ordered, firsts[1:])
+        seen: dict[int, dict[_Look, list[int]]] = defaultdict(lambda: defaultdict(list))
+        for row in np.flatnonzero(clear).tolist():
+            seen[int(table.label[row])][tuple(table.look[row].tolist())].append(row)
         # A look that was seen once teaches nothing of what is the same.
-        several = [at for at, own in enumerate(views) if len(own) >= PIECES]
-        self._views = [views[at] for at in several]
-        label_of = np.array([table.label[views[at][0]] for at in several], dtype=np.int64)
-        of_class = [np.flatnonzero(label_of == label) for label in range(len(pictures.labels))]
-        self._looks_of = [own for own in of_class if len(own) >= 2]
+        self._views = [
+            {look: np.array(rows) for look, rows in looks.items() if len(rows) >= 2}
+            for _, looks in sorted(seen.items())
+        ]
+        self._views = [looks for looks in self._views if len(looks) >= 2]
+        if not self._views:
+            raise BadParameterError(
+                "in these pictures no class shows two looks twice each: render more homes to learn looks from"
+            )
 
     def loss(self, _batch: int, rng: np.random.Generator) -> torch.Tensor:
         """Of one batch."""
-        labels = rng.choice(len(self._looks_of), min(CLASSES, len(self._looks_of)), replace=False)
-        chosen = np.concatenate(
-            [
-                rng.choice(self._views[look], PIECES, replace=False)
-                for looks in (self._looks_of[label] for label in labels)
-                for look in rng.choice(looks, min(LOOKS, len(looks)), replace=False)
-            ]
-        )
+        rows = self._rows(rng)
         table = self._pictures.objects
-        numbers, image_of = np.unique(table.picture[chosen], return_inverse=True)
-        images = as_images(self._pictures.pixels[numbers])
-        box_px = _disturbed(table.box_px[chosen], rng)
-        pieces = patches(images, torch.from_numpy(image_of), box_px)
-        mirrored = torch.from_numpy(rng.random(len(pieces)) < 0.5)
+        pixels = self._pictures.pixels
+        box_px = _disturbed(table.box_px[rows], rng, pixels.shape[1:3])
+        pieces = patches(pixels, table.picture[rows], box_px)
+        mirrored = torch.from_numpy(rng.random(len(rows)) < 0.5)
         pieces = torch.where(mirrored[:, None, None, None], pieces.flip(3), pieces)
         pieces = lit_otherwise(pieces, rng).contiguous(memory_format=torch.channels_last)
-        return look_loss(self._network(pieces).float(), torch.from_numpy(self._look[chosen]))
+        is_known = rng.random() < P_DEPTH
+        metres_per_px = np.full(len(rows), np.nan, dtype=np.float32)
+        if is_known:
+            off = np.exp(rng.normal(0.0, DEPTH_OFF, len(rows)))
+            metres_per_px = (table.ahead_m[rows] / table.focal_px[rows] * off).astype(np.float32)
+        size = extents(box_px, metres_per_px, *pixels.shape[1:3])
+        embeddings = self._network(pieces, torch.from_numpy(size)).float()
+        keys = np.column_stack([table.label[rows], table.look[rows][:, : None if is_known else SIZE]])
+        look = np.unique(keys, axis=0, return_inverse=True)[1]
+        return look_loss(embeddings, torch.from_numpy(look.ravel()), torch.from_numpy(table.label[rows]))
+
+    def _rows(self, rng: np.random.Generator) -> NDArray[np.int64]:
+        """Of some classes, looks that share colours, substances, patterns and sizes, PIECES views of each."""
+        chosen = []
+        for number in rng.choice(len(self._views), min(CLASSES, len(self._views)), replace=False):
+            views = self._views[number]
+            looks = list(views)
+            kept = [
+                set(rng.permutation(sorted({look[part] for look in looks}))[:ALIKE_CHOICES].tolist())
+                for part in range(len(looks[0]))
+            ]
+            alike = [look for look in looks if all(own in some for own, some in zip(look, kept, strict=True))]
+            for at in rng.permutation(len(alike))[:LOOKS]:
+                rows = views[alike[at]]
+                chosen.append(rng.choice(rows, min(PIECES, len(rows)), replace=False))
+        return np.concatenate(chosen) if chosen else self._rows(rng)
 
 
-def _disturbed(box_px: Float32, rng: np.random.Generator) -> Float32:
-    """Boxes as a detector gives them: shifted and stretched a little."""
+def _disturbed(box_px: Float32, rng: np.random.Generator, shape: tuple[int, int]) -> Float32:
+    """Boxes as a detector gives them: shifted and stretched a little, inside of an image of this shape."""
     size = box_px[:, 2:] - box_px[:, :2]
     middle = (box_px[:, :2] + box_px[:, 2:]) / 2.0 + rng.normal(0.0, BOX_SHIFT, size.shape) * size
     size = size * np.exp(rng.normal(0.0, BOX_STRETCH, size.shape))
-    return np.concatenate([middle - size / 2.0, middle + size / 2.0], axis=1).astype(np.float32)
+    corners = np.concatenate([middle - size / 2.0, middle + size / 2.0], axis=1)
+    return np.clip(corners, 0.0, [shape[1], shape[0]] * 2).astype(np.float32)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,7 +20,7 @@ from robustnav_nodes.detection.learned.network import STRIDE
 HOT_PART = 0.54
 COLD_POWER = 4.0
 BOX_WEIGHT = 5.0
-TEMPERATURE = 0.1
+TEMPERATURE = 0.07
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -146,13 +146,17 @@ def generalised_iou(first: torch.Tensor, second: torch.Tensor) -> torch.Tensor:
     return shared / union.clamp(min=1e-6) - (around - union) / around
 
 
-def look_loss(embeddings: torch.Tensor, look: torch.Tensor) -> torch.Tensor:
+def look_loss(embeddings: torch.Tensor, look: torch.Tensor, label: torch.Tensor) -> torch.Tensor:
     """Those of one look near each other, all others away (Khosla et al., "Supervised Contrastive Learning").
 
-    embeddings: float [n, EMBEDDING] of unit length; look: int [n].
+    Asked twice: among all, and among those of the same class, which are what a look has to be told from.
+    embeddings: float [n, EMBEDDING] of unit length; look, label: int [n]. Every look is there at least twice.
     """
     itself = torch.eye(len(look), dtype=torch.bool)
-    likeness = (embeddings @ embeddings.T / TEMPERATURE).masked_fill(itself, -math.inf)
-    log_p = likeness - likeness.logsumexp(dim=1, keepdim=True)
     alike = (look[:, None] == look[None, :]) & ~itself
-    return -(log_p.masked_fill(~alike, 0.0).sum(dim=1) / alike.sum(dim=1).clamp(min=1)).mean()
+    total = torch.zeros(())
+    for apart in (itself, itself | (label[:, None] != label[None, :])):
+        likeness = (embeddings @ embeddings.T / TEMPERATURE).masked_fill(apart, -math.inf)
+        log_p = likeness - likeness.logsumexp(dim=1, keepdim=True)
+        total = total - (log_p.masked_fill(~alike, 0.0).sum(dim=1) / alike.sum(dim=1)).mean()
+    return total

@@ -6,6 +6,8 @@ import torch
 from torch import nn
 from torch.nn import functional
 
+from robustnav_nodes.detection.learned.extents import EXTENTS
+
 # One cell of the detector's output for so many pixels along each axis, and what sides it needs multiples of.
 STRIDE, MULTIPLE = 4, 16
 # A box whose sides are all exp(0) reaches this far from its cell's middle.
@@ -69,7 +71,10 @@ class DetectorNetwork(nn.Module):
 
 
 class LookNetwork(nn.Module):
-    """Pieces of images, PATCH_PX on a side, to unit vectors: near each other where the looks are alike."""
+    """Pieces of images, PATCH_PX on a side, to unit vectors: near each other where the looks are alike.
+
+    How large what they show is goes in, too (`extents`): a small mug looks like a large one afar.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -81,13 +86,15 @@ class LookNetwork(nn.Module):
             _Residual(96),
             _convolution(96, 128),
         )
-        self.out = nn.Linear(256, EMBEDDING)
+        self.size = nn.Sequential(nn.Linear(EXTENTS, 32), nn.ReLU())
+        self.both = nn.Sequential(nn.Linear(256 + 32, 192), nn.ReLU())
+        self.out = nn.Linear(192, EMBEDDING)
 
-    def forward(self, patches: torch.Tensor) -> torch.Tensor:
-        """float [n, 3, PATCH_PX, PATCH_PX] in 0..1 to float [n, EMBEDDING]."""
+    def forward(self, patches: torch.Tensor, extents: torch.Tensor) -> torch.Tensor:
+        """float [n, 3, PATCH_PX, PATCH_PX] in 0..1 and [n, EXTENTS] to float [n, EMBEDDING]."""
         features = self.features(patches - 0.5)
-        pooled = torch.cat([features.mean(dim=(2, 3)), features.amax(dim=(2, 3))], dim=1)
-        return functional.normalize(self.out(pooled).float(), dim=1)
+        pooled = [features.mean(dim=(2, 3)), features.amax(dim=(2, 3)), self.size(extents)]
+        return functional.normalize(self.out(self.both(torch.cat(pooled, dim=1))).float(), dim=1)
 
 
 class _Residual(nn.Module):

@@ -51,6 +51,7 @@ class Phase:
         seed: int,
         budget_s: float,
         checkpoint: Path,
+        peak_rate: float = PEAK_RATE,
         clock: Clock = time.monotonic,
     ) -> None:
         """Take up `checkpoint` where there is one. Raises BadFileError where it cannot be read."""
@@ -64,8 +65,9 @@ class Phase:
         self._seed = seed
         self._budget_s = budget_s
         self._checkpoint = checkpoint
+        self._peak_rate = peak_rate
         self._clock = clock
-        self._optimizer = torch.optim.AdamW(network.parameters(), lr=PEAK_RATE, weight_decay=WEIGHT_DECAY)
+        self._optimizer = torch.optim.AdamW(network.parameters(), lr=peak_rate, weight_decay=WEIGHT_DECAY)
         if checkpoint.exists():
             self._take_up()
 
@@ -102,7 +104,8 @@ class Phase:
         self._save()
 
     def _step(self, workers: GradientWorkers, *, half: bool) -> float:
-        rate = LAST_RATE + (PEAK_RATE - LAST_RATE) * (1.0 + math.cos(math.pi * self.share)) / 2.0
+        last_rate = LAST_RATE / PEAK_RATE * self._peak_rate
+        rate = last_rate + (self._peak_rate - last_rate) * (1.0 + math.cos(math.pi * self.share)) / 2.0
         for group in self._optimizer.param_groups:
             group["lr"] = rate * min(1.0, (self.steps + 1) / WARM_UP_STEPS)
         loss = workers.step(self.steps, half=half)

@@ -128,7 +128,7 @@ def _render_home(job: tuple[RenderPlan, Path, int]) -> ObjectTable:
         frame = _taken(camera, pose, rng) if plan.kind is Kind.TRAINING else camera.take(pose, 0)
         if frame.color is not None:
             pixels[picture] = frame.color.pixels
-        tables.append(_objects(home, number, picture, frame.numbers, pose, alone))
+        tables.append(_objects(home, number, picture, frame.numbers, pose, camera, alone))
     return ObjectTable.joined(tables)
 
 
@@ -215,6 +215,7 @@ def _objects(
     picture: int,
     numbers: NDArray[np.int32],
     pose: Pose2D,
+    camera: "Camera",
     alone: "Mapping[int, Camera]",
 ) -> ObjectTable:
     """The objects of which so many pixels show that they can be spoken of."""
@@ -231,8 +232,7 @@ def _objects(
         (alone[thing.instance].take(pose, 0, color=False).numbers == thing.instance).sum() for thing in things
     ]
     centres_m = np.array([thing.centre_m for thing in things]).reshape(-1, 3)
-    mount = alone[0].mount
-    optical_m = optical_from_base(mount, base_from_map(pose, centres_m))
+    optical_m = optical_from_base(camera.mount, base_from_map(pose, centres_m))
     return ObjectTable(
         picture=np.full(len(shown), picture, dtype=np.int32),
         box_px=np.concatenate([low[shown], high[shown] + 1.0], axis=1).astype(np.float32),
@@ -244,6 +244,7 @@ def _objects(
         visible_fraction=(count[shown] / np.maximum(would_cover, 1)).astype(np.float32),
         distance_m=np.linalg.norm(optical_m, axis=1).astype(np.float32),
         ahead_m=optical_m[:, 2].astype(np.float32),
+        focal_px=np.full(len(shown), camera.model.fx, dtype=np.float32),
     )
 
 

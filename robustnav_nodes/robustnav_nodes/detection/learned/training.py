@@ -1,17 +1,20 @@
-"""Trains the detector from nothing: renders the pictures, trains both networks, writes the weights."""
+"""Trains the detector: renders the pictures, trains its networks, writes the weights."""
 
+import copy
 import json
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import torch
+from torch import nn
 
 from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.detection.learned.gradient_workers import MakeLoss
 from robustnav_nodes.detection.learned.lessons import DetectionLoss, LookLoss
 from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwork, Widths
-from robustnav_nodes.detection.learned.phase import Clock, CurvePoint, Phase
+from robustnav_nodes.detection.learned.phase import PEAK_RATE, Clock, CurvePoint, Phase
 from robustnav_nodes.detection.learned.rendering import Kind, RenderPlan, render_pictures
 from robustnav_nodes.detection.learned.weights import Weights, save_weights
 
@@ -20,7 +23,8 @@ FIRST_SEED, TEST_SEED = 1000, 500_000
 HOMES, PICTURES_PER_HOME = 800, 30
 # Processes, each on one core.
 WORKERS = 2
-LOOK_SHARE = 0.15
+NETWORKS = ("detector", "look")
+LOOK_SHARE = 0.25
 # However slow the rendering was, something is learned.
 LEARNING_MIN_S = 60.0
 
@@ -30,12 +34,19 @@ Report = Callable[[str, float, str], None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainingPlan:
-    """What to train and how long: `minutes` in all, rendering included; `seed` decides all that is random."""
+    """What to train and how long: `minutes` in all, rendering included; `seed` decides all that is random.
+
+    `begin_with`: weights to go on from instead of from nothing; a network that is not among `networks` stays
+    as it is there. `rate`: of the usual learning rate.
+    """
 
     minutes: float
     seed: int
     homes: int = HOMES
     per_home: int = PICTURES_PER_HOME
+    networks: tuple[str, ...] = NETWORKS
+    begin_with: Weights | None = None
+    rate: float = 1.0
 
 
 def train_detector(
@@ -44,13 +55,25 @@ def train_detector(
     """Train, and write the weights to `out`; pictures and checkpoints stay in `training` beside it.
 
     Pictures are rendered once; `resume` takes up checkpoints. Raises BadParameterError where there are some
-    and `resume` was not asked for.
+    and `resume` was not asked for, and where the weights to begin with are missing or for other classes.
     """
-    work = out.parent / "training"
-    checkpoints = [work / f"{name}.checkpoint" for name in ("detector", "look")]
-    if not resume and any(path.exists() for path in checkpoints):
+    from sim_bridge.homes.objects.catalogue import LABELS
+
+    if plan.begin_with is not None and plan.begin_with.labels != LABELS:
         raise BadParameterError(
-            f"{str(work)!r} holds an earlier training; take it up with --resume, or remove it"
+            f"the weights to begin with are for other classes than the homes hold: {plan.begin_with.labels}"
+        )
+    kept = [name for name in NETWORKS if name not in plan.networks]
+    if kept and plan.begin_with is None:
+        raise BadParameterError(
+            f"the {kept[0]} network is not to be trained: name weights that hold it (--begin-with)"
+        )
+    work = out.parent / "training"
+    checkpoints = {name: work / f"{name}.checkpoint" for name in plan.networks}
+    if not resume and any(path.exists() for path in checkpoints.values()):
+        raise BadParameterError(
+            f"{str(work)!r} holds an earlier training; take it up with --resume (and the same options), or "
+            "remove its checkpoints"
         )
     folder = work / "pictures"
     torch.manual_seed(plan.seed)
@@ -62,7 +85,7 @@ def train_detector(
         homes += 1
         report("pictures", homes / plan.homes, f"{homes} homes")
 
-    pictures = render_pictures(
+    render_pictures(
         RenderPlan(kind=Kind.TRAINING, first_seed=FIRST_SEED, homes=plan.homes, per_home=plan.per_home),
         folder,
         WORKERS,
@@ -70,36 +93,32 @@ def train_detector(
     )
     left_s = max(LEARNING_MIN_S, plan.minutes * 60.0 - (clock() - began_s))
     widths = Widths()
-    detector = DetectorNetwork(len(pictures.labels), widths).to(memory_format=torch.channels_last)
-    look = LookNetwork().to(memory_format=torch.channels_last)
+    weights = plan.begin_with or Weights(
+        labels=LABELS, widths=widths, detector=DetectorNetwork(len(LABELS), widths), look=LookNetwork()
+    )
+    networks: dict[str, nn.Module] = {"detector": weights.detector, "look": weights.look}
+    make_loss: dict[str, MakeLoss] = {
+        "detector": DetectionLoss(pictures=folder, seed=plan.seed),
+        "look": LookLoss(pictures=folder),
+    }
+    share = {"detector": 1.0 - LOOK_SHARE, "look": LOOK_SHARE}
     phases = {
-        "detector": Phase(
-            detector,
-            DetectionLoss(pictures=folder, seed=plan.seed),
+        name: Phase(
+            copy.deepcopy(networks[name]).train().to(memory_format=torch.channels_last),
+            make_loss[name],
             workers=WORKERS,
             seed=plan.seed,
-            budget_s=left_s * (1.0 - LOOK_SHARE),
-            checkpoint=checkpoints[0],
+            budget_s=left_s * share[name] / sum(share[trained] for trained in plan.networks),
+            peak_rate=PEAK_RATE * plan.rate,
+            checkpoint=checkpoints[name],
             clock=clock,
-        ),
-        "look": Phase(
-            look,
-            LookLoss(pictures=folder),
-            workers=WORKERS,
-            seed=plan.seed,
-            budget_s=left_s * LOOK_SHARE,
-            checkpoint=checkpoints[1],
-            clock=clock,
-        ),
+        )
+        for name in plan.networks
     }
     for name, phase in phases.items():
         phase.run(lambda now, name=name: report(name, now.share, _standing(now)))  # type: ignore[misc]
-    weights = Weights(
-        labels=pictures.labels,
-        widths=widths,
-        detector=phases["detector"].average,
-        look=phases["look"].average,
-    )
+    trained = {name: phase.average.eval() for name, phase in phases.items()}
+    weights = replace(weights, **trained)
     save_weights(out, weights)
     save_curves(out.with_suffix(".curves"), {name: phase.curve for name, phase in phases.items()})
     return weights

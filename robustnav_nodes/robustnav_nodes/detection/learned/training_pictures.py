@@ -19,7 +19,8 @@ class ObjectTable:
     picture: int32 [n]; box_px: float32 [n, 4] around the visible pixels, upper bounds exclusive; label: int32
     [n]; look: int32 [n, 4], numbers of colour, substance, pattern and size; home, instance: int32 [n], which
     object it is; visible_px: int32 [n]; visible_fraction: float32 [n] in 0..1; distance_m, ahead_m: float32
-    [n], from the camera to its centre, straight and along the optical axis.
+    [n], from the camera to its centre, straight and along the optical axis; focal_px: float32 [n], of the
+    camera.
     """
 
     picture: NDArray[np.int32]
@@ -32,6 +33,7 @@ class ObjectTable:
     visible_fraction: Float32
     distance_m: Float32
     ahead_m: Float32
+    focal_px: Float32
 
     def __len__(self) -> int:
         return len(self.picture)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwork, Widths
 
-FORMAT = "robustnav detector 1"
+FORMAT = "robustnav detector 2"
 SHIPPED = Path(__file__).with_name("weights.npz")
 REMEDY = "train them anew with `robustnav train detector`, or leave `model` empty for those that come along"
 _FACTS, _DETECTOR, _LOOK = "facts", "detector.", "look."
@@ -66,11 +66,16 @@ def load_weights(path: Path = SHIPPED, labels: Sequence[str] | None = None) -> W
             neck=sizes["neck"],
             head=sizes["head"],
         )
-        whole = facts["format"] == FORMAT and facts["sha256"] == _digest(arrays)
+        known_format, whole = str(facts["format"]), facts["sha256"] == _digest(arrays)
     except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
         raise BadFileError(
             f"the weights file {str(path)!r} is cut short or is none ({error}); {REMEDY}"
         ) from error
+    if known_format != FORMAT:
+        raise BadFileError(
+            f"the weights file {str(path)!r} is of format {known_format!r}, this version reads {FORMAT!r}; "
+            f"{REMEDY}"
+        )
     if not whole:
         raise BadFileError(f"the weights file {str(path)!r} is damaged: its check sum differs; {REMEDY}")
     if labels is not None and tuple(labels) != known:
