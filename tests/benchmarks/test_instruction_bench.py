@@ -15,16 +15,18 @@ from robustnav_nodes.benchmarks.instruction_bench import (
     chosen_pairs,
     judge_episodes,
     mean_row,
+    online_step_time,
     pair_rows,
     row_of,
 )
+from robustnav_nodes.benchmarks.instruction_episodes import bench_episodes
 from robustnav_nodes.cli import app
 from robustnav_nodes.instruction.common_sense import anything_goes
-from robustnav_nodes.instruction.episodes import ErrorEpisode
-from robustnav_nodes.instruction.injection import Injector, error_episodes
+from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode
+from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, error_episodes
 from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.verdict import Verdict
-from tests.instruction.pack_files import write_pack
+from tests.instruction.pack_files import write_lines, write_pack
 from tests.instruction.small_world import said_walks
 
 runner = CliRunner()
@@ -40,7 +42,7 @@ def judged(**changes: Any) -> Judged:
         "distances": np.array([np.nan, 0.0, np.nan, 3.0]),
         "homes": ("a", "a", "b", "b"),
         "pairs": ("left/right", "left/right", "into/out of", "into/out of"),
-        "judge_ms": 1.0,
+        "seconds": 0.008,
     }
     return Judged(**(chosen | changes))
 
@@ -48,7 +50,7 @@ def judged(**changes: Any) -> Judged:
 def test_auc_and_atd_of_four_episodes() -> None:
     """Of the four pairs of a wrong and a clean one three are in order; the distances are 0 and 3."""
     row = row_of(judged())
-    assert (row.episodes, row.auc, row.atd) == (4, 0.75, 1.5)
+    assert (row.episodes, row.auc, row.atd, row.seconds_per_1000) == (4, 0.75, 1.5, 2.0)
     assert row.auc_ci is not None
     assert row.auc_ci[0] <= 0.75 <= row.auc_ci[1]
 
@@ -114,6 +116,52 @@ def test_a_part_of_the_episodes_keeps_pairs_together() -> None:
     assert {one.key[:-1] for one in part if one.label} == {one.key[:-1] for one in part if not one.label}
 
 
+def test_a_robot_is_timed_at_every_viewpoint() -> None:
+    """Each walk of the small world has four."""
+    injector = Injector(common_sense=anything_goes())
+    episodes = list(error_episodes(said_walks(homes=1, walks=2, seed=0), "all", injector, 1))
+    seen: list[int] = []
+
+    class Counts:
+        def judge(self, trajectory: Trajectory, tokens: tuple[str, ...]) -> Verdict:
+            seen.append(len(trajectory))
+            return Verdict(error_score=0.5)
+
+    step = online_step_time("m", Counts(), "uniform", episodes)
+    assert step is not None
+    assert seen == [1, 2, 3, 4] * len(episodes)
+    assert (step.steps, step.median_ms <= step.p95_ms) == (len(seen), True)
+
+
+def test_a_packs_own_errors_are_kept_where_the_other_protocol_is_missing(tmp_path: Path) -> None:
+    pack = write_pack(tmp_path / "pack", walks=12)
+    for error_type in ERROR_TYPES:
+        write_lines(pack / "errors_uniform" / f"val_seen_{error_type}.jsonl.gz", [])
+    found = bench_episodes(pack, "val_seen", PROTOCOLS, None, 1)
+    assert not any(found["uniform"].values())
+    assert any(found["matched"].values())
+
+
+def test_without_common_sense_anything_is_confused_with_anything(tmp_path: Path) -> None:
+    """The pack allows a bedroom to be taken for a hallway alone."""
+    pack = write_pack(tmp_path / "pack", walks=40)
+    (pack / "priors.json").write_text(
+        json.dumps({"room_adjacency": {"bedroom": ["hallway"]}, "object_colocation": {}})
+    )
+    wrong = {
+        common_sense: {
+            span.wrong
+            for one in bench_episodes(pack, "train", ("uniform",), None, 1, common_sense=common_sense)[
+                "uniform"
+            ]["room"]
+            for span in one.wrong
+        }
+        for common_sense in (True, False)
+    }
+    assert wrong[True] == {"hallway"}
+    assert len(wrong[False]) > 5
+
+
 @pytest.fixture(scope="module")
 def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("torch")
@@ -153,6 +201,11 @@ def test_the_command_writes_a_row_for_each_model_and_type(model: Path, tmp_path:
     assert types == {"direction", "room", "object", "room_object", "all", "mean"}
     assert {row["protocol"] for row in report["rows"]} == {"uniform", "matched"}
     assert all("auc" in row and "auc_ci" in row and "atd" in row for row in report["rows"])
+    assert all(row["seconds_per_1000"] > 0.0 for row in report["rows"] if row["episodes"])
+    steps = {step["protocol"]: step for step in report["online_step_ms"]}
+    assert set(steps) == {"uniform", "matched"}
+    assert all(0.0 < step["median_ms"] <= step["p95_ms"] for step in steps.values())
+    assert "…" not in done.output  # nothing is cut off in a terminal of 80 columns
     assert (tmp_path / "instruction_auc.png").stat().st_size > 10_000
     assert (tmp_path / "instruction_reliability.png").exists()
 
@@ -178,6 +231,7 @@ def test_the_audit_reads_a_file_of_a_pack(model: Path, tmp_path: Path) -> None:
         (("--models", "oracle"), "there is no model 'oracle'"),
         (("--model", "none.npz"), "cannot read the model 'none.npz'"),
         (("--plots", "nowhere"), "is no folder"),
+        (("--suite", "val_seen"), "add --data PACK"),
     ],
 )
 def test_bad_arguments_are_answered_with_a_sentence(

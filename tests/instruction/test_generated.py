@@ -1,18 +1,21 @@
 """What is said of a generated walk is true of it, by the boxes of the home and the yaws of the walk."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 from robustnav_nodes.benchmarks.generated_instructions import GenerationPlan, survey_home
 from robustnav_nodes.instruction.concepts import DIRECTION, OBJECT, ROOM
+from robustnav_nodes.instruction.generated.choosing import all_facts
 from robustnav_nodes.instruction.generated.facts import Kind
 from robustnav_nodes.instruction.generated.frames import FRAMES
 from robustnav_nodes.instruction.generated.naming import SAID, plural
 from robustnav_nodes.instruction.generated.room_words import WORDS
 from robustnav_nodes.instruction.generated.survey import Survey, ToldWalk, instructions_of
-from robustnav_nodes.instruction.generated.telling import Clause
+from robustnav_nodes.instruction.generated.telling import Clause, tell
+from robustnav_nodes.instruction.generated.writers import WRITERS
 from robustnav_nodes.instruction.mentions import Mention, concepts_of_name, find_mentions
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import wrapped
@@ -36,6 +39,25 @@ def clauses(surveys: list[Survey]) -> list[tuple[ToldWalk, Clause]]:
         for walk in walks
         for told in walk.told
         for clause in told.clauses
+    ]
+
+
+RARE = (Kind.CROSS_COUNTED, Kind.CROSS_OUTERMOST, Kind.STOP_OUTERMOST, Kind.STRAIGHT)
+
+
+@pytest.fixture(scope="module")
+def rare_clauses(surveys: list[Survey]) -> list[tuple[ToldWalk, Clause]]:
+    """What every writer says of each fact of some kinds, also where none chose to."""
+    rng = np.random.default_rng(0)
+    return [
+        (walk, clause)
+        for surveyed in surveys
+        for walks in surveyed.walks.values()
+        for walk in walks
+        for fact in all_facts(walk.surroundings)
+        if fact.kind in RARE
+        for writer in WRITERS
+        for clause in tell([fact], walk.surroundings, writer, rng).clauses
     ]
 
 
@@ -109,6 +131,83 @@ def test_sides_agree_with_the_geometry(clauses: list[tuple[ToldWalk, Clause]]) -
             else:
                 assert any(bearing * sign > 0.0 for bearing in bearings), clause.text
     assert checked > 50
+
+
+def test_the_outermost_lies_farther_to_its_side_than_all_others(
+    rare_clauses: list[tuple[ToldWalk, Clause]],
+) -> None:
+    """Of the doors that somebody faces on the way to one, and of the things alike where a walk ends."""
+    checked = 0
+    for told, clause in rare_clauses:
+        sides = [m.concept for m in mentions(clause, DIRECTION) if m.concept.endswith("most")]
+        if not sides:
+            continue
+        walk, fact = told.walk, clause.fact
+        at, own = fact.first, fact.things[0]
+        yaw = walk.yaw_in_rad[at] if own.joins else walk.yaw_out_rad[at]
+        behind = {crossing.door for crossing in walk.crossings if crossing.after < at}
+        others = [
+            thing
+            for thing in told.surroundings.things(at)
+            if thing != own
+            and thing.name == own.name
+            and (thing.room == own.room if own.joins is None else fact.rooms[0] in (thing.joins or ()))
+            and thing not in behind
+            and abs(walk.bearing_rad(at, thing, yaw)) <= math.radians(100.0)
+        ]
+        bearings = [walk.bearing_rad(at, thing, yaw) * SIDES[sides[0]] for thing in (own, *others)]
+        assert others, clause.text
+        assert max(bearings[1:]) < bearings[0], clause.text
+        checked += 1
+    assert checked > 20
+
+
+def test_the_nth_door_is_the_nth_at_its_side(rare_clauses: list[tuple[ToldWalk, Clause]]) -> None:
+    """Of the doors of the room that are left behind at that side, by their order along the way."""
+    ordinals = ("first", "second", "third", "fourth", "fifth")
+    checked = 0
+    for told, clause in rare_clauses:
+        walk, fact = told.walk, clause.fact
+        said = [word for word in tokenized(clause.text) if word in (*ordinals, "last")]
+        if fact.kind is not Kind.CROSS_COUNTED or not said:
+            continue
+        (sign,) = {SIDES[m.concept] for m in mentions(clause, DIRECTION) if m.concept in SIDES}
+        x, y = walk.xy_m[fact.first].tolist()
+        cos, sin = math.cos(walk.yaw_out_rad[fact.first]), math.sin(walk.yaw_out_rad[fact.first])
+        came_by = [c.door for c in walk.crossings if c.after < fact.first]
+        along = []
+        for door in told.surroundings.dwelling.doors:
+            if fact.rooms[0] not in (door.joins or ()) or door in came_by[-1:]:
+                continue
+            dx, dy = door.centre_m[0] - x, door.centre_m[1] - y
+            width, depth = (door.high_m[k] - door.low_m[k] for k in (0, 1))
+            is_beside = abs(cos if width > depth else sin) > 0.8 and (cos * dy - sin * dx) * sign > 0.4
+            if is_beside and cos * dx + sin * dy > 0.2:
+                along.append((cos * dx + sin * dy, door.number))
+        order = [number for _, number in sorted(along)]
+        expected = len(order) if said[0] == "last" else ordinals.index(said[0]) + 1
+        assert order.index(fact.things[0].number) + 1 == expected, clause.text
+        checked += 1
+    assert checked > 20
+
+
+def test_distances_are_those_of_a_straight_way(rare_clauses: list[tuple[ToldWalk, Clause]]) -> None:
+    """To half a metre, or half of the five feet that people round to."""
+    numbers = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"]
+    checked = 0
+    for told, clause in rare_clauses:
+        found = re.search(r"(\w+) (meter|feet)", clause.text)
+        if found is None:
+            continue
+        walk, fact = told.walk, clause.fact
+        said = numbers.index(found[1]) if found[1] in numbers else int(found[1])
+        unit_m, step = (1.0, 1) if found[2] == "meter" else (0.3048, 5)
+        walked_m = float(np.linalg.norm(np.diff(walk.xy_m[fact.first : fact.last + 1], axis=0), axis=1).sum())
+        assert abs(said * unit_m - walked_m) <= 0.51 * step * unit_m, clause.text
+        turns = [abs(walk.turn_rad(at)) for at in range(fact.first + 1, fact.last)]
+        assert max(turns, default=0.0) < math.radians(25.0), clause.text
+        checked += 1
+    assert checked > 20
 
 
 def test_the_other_directions_agree_too(clauses: list[tuple[ToldWalk, Clause]]) -> None:

@@ -7,18 +7,21 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.benchmarks.generated_instructions import (
     GenerationPlan,
     generated_instructions,
     write_generated_pack,
 )
+from robustnav_nodes.benchmarks.instruction_statistics import pack_statistics
 from robustnav_nodes.cli import app
 from robustnav_nodes.instruction.episodes import ERROR_TYPES
 from robustnav_nodes.instruction.injection import PROTOCOLS
+from robustnav_nodes.instruction.pack_lines import PackFolder
 from robustnav_nodes.instruction.r2r_pack import R2rPack
+from robustnav_nodes.instruction.tokens import tokenized
 
-PLAN = GenerationPlan(seed=4200, homes=2, unseen=1, walks=5, walks_seen=2, writers=2)
+PLAN = GenerationPlan(seed=4200, homes=1, unseen=1, walks=5, walks_seen=2, writers=2)
 
 
 @pytest.fixture(scope="module")
@@ -59,9 +62,21 @@ def test_splits_share_homes_as_they_should(folder: Path) -> None:
 
 
 def test_alignments_cover_the_instruction(folder: Path) -> None:
-    for said, chunks in R2rPack(folder).alignments("val_unseen"):
-        assert sum(words for words, _, _ in chunks) <= len(said.tokens)
-        assert all(0 <= first <= last < len(said.trajectory) for _, first, last in chunks)
+    for line in PackFolder(folder).rows("r2r_val_unseen.jsonl.gz"):
+        for said, chunks in zip(line.texts("instructions"), line.items("sub_instructions"), strict=True):
+            assert sum(len(words) for words, _, _ in chunks) <= len(tokenized(said))
+            assert all(0 <= first <= last < len(line.texts("path")) for _, first, last in chunks)
+
+
+def test_data_seeds_share_no_home() -> None:
+    """Not neighbouring ones, nor what one trains in and another judges on."""
+    plans = [GenerationPlan(seed=seed, homes=300, unseen=60) for seed in range(4)]
+    seeds = [plan.seed_of(home) for plan in plans for home in range(plan.homes + plan.unseen)]
+    seeds += [GenerationPlan(seed=seed, homes=100_000, unseen=0).seed_of(99_999) for seed in range(4)]
+    assert len(set(seeds)) == len(seeds)
+    assert GenerationPlan(seed=1, homes=0, unseen=1).seed_of(0) == plans[1].seed_of(300)
+    with pytest.raises(BadParameterError, match="too many for one seed"):
+        GenerationPlan(seed=1, homes=100_001, unseen=0)
 
 
 def test_errors_are_pairs_and_one_word_away(folder: Path) -> None:
@@ -100,3 +115,11 @@ def test_statistics_command(folder: Path, tmp_path: Path) -> None:
     for row in rows:
         assert row["episodes"] == 0 or row["errors_per_episode"] == sum(1 for n in row["kinds"].values() if n)
     assert rows[0]["thesis"]["episodes"] == 3218
+
+
+def test_more_can_be_put_in_where_nothing_has_to_make_sense(folder: Path) -> None:
+    likely, any_at_all = (
+        sum(row.statistics.episodes for row in pack_statistics(folder, ["train"], common_sense=common_sense))
+        for common_sense in (True, False)
+    )
+    assert any_at_all > likely > 0

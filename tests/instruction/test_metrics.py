@@ -9,8 +9,11 @@ from robustnav_msgs_py.errors import BadParameterError
 from robustnav_nodes.instruction.metrics import (
     atd,
     auc,
+    auc_of_draws,
+    drawn_groups,
     expected_calibration_error,
-    group_interval,
+    interval_of,
+    mean_of_draws,
     temperature,
     token_distance,
     with_temperature,
@@ -45,12 +48,33 @@ def test_atd_is_a_mean_over_episodes() -> None:
     assert atd([]) is None
 
 
-def test_interval_holds_the_figure() -> None:
-    values = np.random.default_rng(1).normal(size=60)
-    found = group_interval([str(k // 10) for k in range(60)], lambda rows: float(values[rows].mean()))
-    assert found is not None
-    assert found[0] <= values.mean() <= found[1]
-    assert group_interval(["one"] * 4, lambda rows: 1.0) is None
+def test_a_draw_of_homes_has_the_figures_of_the_episodes_it_repeats() -> None:
+    """As often as a home is drawn its episodes count, ties and clean episodes (NaN) included."""
+    rng = np.random.default_rng(1)
+    scores, labels = rng.integers(0, 6, 40) / 5.0, (rng.uniform(size=40) < 0.5).astype(float)
+    distances = np.where(labels > 0.5, rng.integers(0, 9, 40), np.nan)
+    group = rng.integers(0, 5, 40)
+    draws = drawn_groups(5)[:30]
+    aucs, atds = auc_of_draws(scores, labels, group, draws), mean_of_draws(distances, group, draws)
+    for draw, found_auc, found_atd in zip(draws, aucs, atds, strict=True):
+        rows = np.repeat(np.arange(40), draw[group].astype(int))
+        assert found_auc == pytest.approx(auc(scores[rows], labels[rows]))
+        assert found_atd == pytest.approx(np.nanmean(distances[rows]))
+
+
+def test_draws_without_a_figure_are_left_out() -> None:
+    nothing = np.array([0])
+    assert np.isnan(auc_of_draws(np.ones(1), np.ones(1), nothing, np.ones((1, 1)))).all()
+    assert np.isnan(mean_of_draws(np.full(1, np.nan), nothing, np.ones((1, 1)))).all()
+    assert interval_of(np.array([np.nan, 1.0, 1.0])) == (1.0, 1.0)
+    assert interval_of(np.full(3, np.nan)) is None
+
+
+def test_the_same_seed_draws_the_same_homes_and_as_many() -> None:
+    draws = drawn_groups(7, seed=3)
+    assert (draws.sum(axis=1) == 7).all()
+    assert (draws == drawn_groups(7, seed=3)).all()
+    assert (draws != drawn_groups(7, seed=4)).any()
 
 
 def test_temperature_mends_overconfidence() -> None:

@@ -12,6 +12,7 @@ from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.benchmarks.r2r_building import build_r2r_pack
 from robustnav_nodes.benchmarks.r2r_objects import angular_box, bearing, locate
 from robustnav_nodes.benchmarks.r2r_sources import BoxedObject, SourceFolders, read_connectivity
+from robustnav_nodes.instruction.pack_lines import PackFolder
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 
 SAID = "Walk out of the bedroom past the bed. Turn right and stop in the kitchen next to the sink."
@@ -111,7 +112,8 @@ def test_a_pack_from_sources(folders: SourceFolders, tmp_path: Path) -> None:
     assert bed.bearing_rad == pytest.approx(math.atan2(1.5, 1.0) - first.yaw_in_rad, abs=0.02)
     assert bed.range_m == pytest.approx(math.hypot(1.0, 1.5, 0.8), abs=0.05)
     assert pack.instructions("train")[0].tokens[-1] == "."
-    assert pack.alignments("val_seen")[0][1] == [(8, 0, 1), (4, 1, 2)]
+    (line, _) = PackFolder(tmp_path / "pack").rows("r2r_val_seen.jsonl.gz")
+    assert line.items("sub_instructions")[0] == [[CHUNKS[0][0], 0, 1], [CHUNKS[0][1], 1, 2]]
     assert pack.episodes("val_seen", "uniform", "direction")
 
 
@@ -145,6 +147,21 @@ def test_two_rays_meet_and_one_does_not(folders: SourceFolders) -> None:
             '"visible_pos": []',
             "0 views",
         ),
+        (BOXES, '{"7": {', '{"seven": {', "objects by their numbers"),
+        (BOXES, '"bbox2d": [[', '"bbox2d": [["left", ', "four numbers"),
+        (BOXES, '"visible_pos": [13]', '"visible_pos": [36]', "below 36"),
+        (
+            "fg/data/FGR2R_val_seen.json",
+            '"chunk_view": [[[1, 2]',
+            '"chunk_view": [[[1]',
+            "a first and a last",
+        ),
+        ("fg/data/FGR2R_val_seen.json", "[[['walk'", "[[[7", "lists .chunks. of words"),
+        ("fg/data/FGR2R_val_seen.json", '"heading": 0.5', '"heading": 1' + "0" * 400, "a finite number"),
+        ("sim/connectivity/one_connectivity.json", '"visible": [false, ', '"visible": [', "each of the 4"),
+        ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11\n", "", "6 pictures"),
+        ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "hall", "room label"),
+        ("mp/metadata/category_mapping.tsv", "mpcat40", "mpcat", "the columns raw_category and mpcat40"),
         ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "13", "room label"),
     ],
 )
@@ -158,7 +175,7 @@ def test_a_bad_source_is_named(
         build_r2r_pack(folders, tmp_path / "pack", ["train", "val_seen"], seed=1)
 
 
-@pytest.mark.parametrize("gone", ["fg", "sim", "mp"])
+@pytest.mark.parametrize("gone", ["fg", "sim", "mp", "reverie"])
 def test_a_missing_source_is_named(folders: SourceFolders, tmp_path: Path, gone: str) -> None:
     (tmp_path / gone).rename(tmp_path / "elsewhere")
     with pytest.raises(BadFileError, match=gone):

@@ -61,11 +61,10 @@ def test_frames(folder: Path) -> None:
     assert sum(third.rooms) == pytest.approx(1.0)
 
 
-def test_instructions_and_alignment(folder: Path) -> None:
+def test_instructions_and_common_sense(folder: Path) -> None:
     pack = R2rPack(folder)
     said = pack.instructions("train")
     assert [one.key for one in said] == ["0_0", "1_0"]
-    assert pack.alignments("val_seen")[0][1] == [(2, 0, 1), (2, 1, 2)]
     assert "kitchen" in pack.common_sense().rooms["bedroom"]
 
 
@@ -77,12 +76,19 @@ def test_episodes(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("pos", 9), ("pos", "one"), ("kind", "colour"), ("len", 0)],
+    [("pos", 9), ("pos", "one"), ("kind", "colour"), ("len", 0), ("new", "port")],
 )
 def test_a_wrong_error_is_named(folder: Path, field: str, value: object) -> None:
     error = {**EPISODE["errors"][0], field: value}
     write_episodes(folder, [{**EPISODE, "errors": [error]}])
     with pytest.raises(BadFileError, match=r"line 1 of .*val_seen_direction"):
+        R2rPack(folder).episodes("val_seen", "uniform", "direction")
+
+
+@pytest.mark.parametrize(("field", "value"), [("label", 0), ("scan", "hut"), ("type", "room")])
+def test_an_episode_that_does_not_fit_its_walk_is_named(folder: Path, field: str, value: object) -> None:
+    write_episodes(folder, [{**EPISODE, field: value}])
+    with pytest.raises(BadFileError, match=rf"line 1 of .*val_seen_direction.* holds '{field}'"):
         R2rPack(folder).episodes("val_seen", "uniform", "direction")
 
 
@@ -105,6 +111,10 @@ def test_a_missing_file_is_named(folder: Path, name: str) -> None:
         ("graph.jsonl.gz", "[1, 2]]", "[1, 7]]", "numbers below 3"),
         ("r2r_train.jsonl.gz", '"a", "b"', '"a", "z"', "'z'"),
         ("r2r_train.jsonl.gz", "{", "", "not JSON"),
+        ("r2r_train.jsonl.gz", '"path_id": 1', '"path_id": 0', "another number than the paths before"),
+        ("r2r_train.jsonl.gz", '"scan": "home"', '"scan": "hut"', "the scan of viewpoint 'a', 'home'"),
+        ("r2r_train.jsonl.gz", '"heading": 0.0', '"heading": 1' + "0" * 400, "a finite number"),
+        ("viewpoints.jsonl.gz", '["bed", 0.0', '["bed", NaN', "finite numbers or null"),
     ],
 )
 def test_a_wrong_field_is_named(folder: Path, name: str, old: str, new: str, said: str) -> None:

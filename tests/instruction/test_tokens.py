@@ -15,6 +15,9 @@ from robustnav_nodes.instruction.tokens import MAX_TOKENS, tokenized
         ('the "exit" (on the left)', ("the", "exit", "on", "the", "left")),
         ("turn 90 degrees 🙂🚪", ("turn", "90", "degrees")),
         ("поверни налево", ("поверни", "налево")),
+        ("रसोई में बाएँ मुड़ें।", ("रसोई", "में", "बाएँ", "मुड़ें")),
+        ("می‌خواهم", ("می‌خواهم",)),
+        ("stop at the cafe\u0301 🚪\ufe0f", ("stop", "at", "the", "café")),
     ],
 )
 def test_tokens(text: str, tokens: tuple[str, ...]) -> None:

@@ -4,13 +4,12 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
-from robustnav_msgs_py.errors import BadFileError, BadSceneError
+from robustnav_msgs_py.errors import BadFileError, BadParameterError, BadSceneError
 from robustnav_nodes.benchmarks.dwelling_of_home import dwelling_of
 from robustnav_nodes.instruction.episodes import Instruction
 from robustnav_nodes.instruction.generated.pack_rows import (
@@ -26,22 +25,22 @@ from robustnav_nodes.instruction.pack_errors import TRAIN, write_errors
 from robustnav_nodes.instruction.pack_writing import PackWriter
 
 VAL_SEEN, VAL_UNSEEN = "val_seen", "val_unseen"
-# Homes of seeds from here on are not trained in.
-UNSEEN_SEED = 500_000
+# Every data seed has two stretches of home seeds of its own: one to train in, one that nobody trains in.
+MOST_HOMES = 100_000
+_FIRST_HOME = 1_000_000  # those below are homes of other benchmarks
 SPLITS = (TRAIN, VAL_SEEN, VAL_UNSEEN)
 # A hallway joins rooms from five on: walks of several rooms, with doors at both sides.
 ROOMS = (5, 6, 7, 8, 9, 10)
 _HOMES_A_JOB = 4
+_TOLD_EVERY = 20  # homes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GenerationPlan:
-    """`homes` homes of the seeds from `seed` on are trained in; `unseen` others are for val_unseen alone.
+    """`homes` homes are trained in; `unseen` others, which no other plan trains in, are for val_unseen alone.
 
-    Those are of the seeds from UNSEEN_SEED + `seed` on, which nobody trains in.
-
-    `walks` of each home in train and in val_unseen, `walks_seen` more of those for val_seen; each is told by
-    `writers`.
+    Plans of different `seed` share no home. `walks` of each home in train and in val_unseen, `walks_seen`
+    more of those for val_seen; each is told by `writers`. Raises BadParameterError for more than MOST_HOMES.
     """
 
     seed: int
@@ -51,14 +50,17 @@ class GenerationPlan:
     walks_seen: int = 2
     writers: int = 2
 
-    @property
-    def last_seed(self) -> int:
-        """Of the homes that are trained in."""
-        return self.seed + self.homes - 1
+    def __post_init__(self) -> None:
+        if max(self.homes, self.unseen) > MOST_HOMES:
+            raise BadParameterError(
+                f"{self.homes} homes and {self.unseen} unseen ones are too many for one seed; it has "
+                f"{MOST_HOMES} of each"
+            )
 
     def seed_of(self, home: int) -> int:
         """Of the home that is `home` numbers after the first."""
-        return self.seed + home + (0 if home < self.homes else UNSEEN_SEED - self.homes)
+        first = _FIRST_HOME + 2 * MOST_HOMES * self.seed
+        return first + home + (0 if home < self.homes else MOST_HOMES - self.homes)
 
     def splits_of(self, home: int) -> dict[str, int]:
         """How many walks of each split the home has that is `home` numbers after the first."""
@@ -80,15 +82,29 @@ def survey_home(plan: GenerationPlan, home: int) -> Survey | None:
     return survey(dwelling, seed, plan.splits_of(home), plan.writers, seed)
 
 
-def generated_instructions(plan: GenerationPlan, split: str, workers: int) -> Iterator[Instruction]:
-    """The instructions of one split, home by home, without files between; in so many processes."""
+def generated_instructions(
+    plan: GenerationPlan, split: str, workers: int, say: Callable[[str], object] = lambda told: None
+) -> Iterator[Instruction]:
+    """The instructions of one split, home by home, without files between; in so many processes.
+
+    `say` is told now and then how many homes are made.
+    """
     homes = [home for home in range(plan.homes + plan.unseen) if plan.splits_of(home).get(split)]
     instructions_at = partial(_instructions_at, plan, split)
     if workers == 1:
-        yield from chain.from_iterable(map(instructions_at, homes))
+        yield from _told(map(instructions_at, homes), len(homes), say)
         return
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from chain.from_iterable(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB))
+        yield from _told(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB), len(homes), say)
+
+
+def _told(
+    made: Iterable[list[Instruction]], homes: int, say: Callable[[str], object]
+) -> Iterator[Instruction]:
+    for number, of_home in enumerate(made, start=1):
+        yield from of_home
+        if number % _TOLD_EVERY == 0 or number == homes:
+            say(f"made {number} of {homes} homes and what is said in them")
 
 
 def _instructions_at(plan: GenerationPlan, split: str, home: int) -> list[Instruction]:
@@ -158,7 +174,7 @@ class _Lines:
             counts[f"{split} instructions"] = sum(len(line["instructions"]) for line in self.walks[split])
         writer.meta(
             source="simulated homes",
-            seeds=[plan.seed, plan.last_seed],
+            seed=plan.seed,
             plan={"walks": plan.walks, "walks_seen": plan.walks_seen, "writers": plan.writers},
             scans=[line["scan"] for line in self.graphs],
             counts=counts,

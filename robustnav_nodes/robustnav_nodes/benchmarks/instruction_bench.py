@@ -10,16 +10,21 @@ from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import DIRECTION, pair_of
 from robustnav_nodes.instruction.episodes import ErrorEpisode
 from robustnav_nodes.instruction.metrics import (
+    Int64,
     Interval,
     atd,
     auc,
+    auc_of_draws,
+    drawn_groups,
     expected_calibration_error,
-    group_interval,
+    interval_of,
+    mean_of_draws,
     reliability,
     temperature,
     token_distance,
     with_temperature,
 )
+from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.verdict import ErrorModel
 
 MEAN = "mean"  # the row of all types of errors: the mean of their figures
@@ -41,16 +46,7 @@ class Judged:
     distances: Float64
     homes: tuple[str, ...]
     pairs: tuple[str, ...]
-    judge_ms: float
-
-    def auc_of(self, rows: np.ndarray[tuple[int], np.dtype[np.int64]]) -> float | None:
-        """Of some of the episodes."""
-        return auc(self.scores[rows], self.labels[rows])
-
-    def atd_of(self, rows: np.ndarray[tuple[int], np.dtype[np.int64]]) -> float | None:
-        """Of the perturbed ones among some of the episodes."""
-        distances = self.distances[rows]
-        return atd(distances[~np.isnan(distances)].tolist())
+    seconds: float  # that all verdicts took
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +62,7 @@ class InstructionRow:
     atd: float | None
     atd_ci: Interval | None
     calibration_error: float | None
-    judge_ms: float
+    seconds_per_1000: float  # episodes
 
 
 def judge_episodes(
@@ -78,11 +74,12 @@ def judge_episodes(
     advance: Callable[[], None] = lambda: None,
 ) -> Judged:
     """Ask a model about each episode. A wrong instruction's pair comes after its clean twin or before it."""
-    scores, distances, times = [], [], []
+    scores, distances = [], []
+    seconds = 0.0
     for episode in episodes:
         began = time.perf_counter()
         verdict = model.judge(episode.trajectory, episode.tokens)
-        times.append(time.perf_counter() - began)
+        seconds += time.perf_counter() - began
         scores.append(verdict.error_score)
         true = [span.start for span in episode.wrong]
         distances.append(
@@ -98,41 +95,46 @@ def judge_episodes(
         distances=np.array(distances, dtype=np.float64),
         homes=tuple(episode.group for episode in episodes),
         pairs=_pairs_of(episodes),
-        judge_ms=float(np.median(times) * 1e3) if times else 0.0,
+        seconds=seconds,
     )
 
 
 def row_of(judged: Judged) -> InstructionRow:
     """The figures, with 95 % intervals over homes."""
-    everything = np.arange(len(judged.scores))
-    known = len(everything) > 0
+    known = len(judged.scores) > 0
+    aucs, atds = _figures_of_draws([judged])
     return InstructionRow(
         model=judged.model,
         protocol=judged.protocol,
         error_type=judged.error_type,
-        episodes=len(everything),
-        auc=judged.auc_of(everything) if known else None,
-        auc_ci=group_interval(judged.homes, judged.auc_of),
-        atd=judged.atd_of(everything) if known else None,
-        atd_ci=group_interval(judged.homes, judged.atd_of),
+        episodes=len(judged.scores),
+        auc=auc(judged.scores, judged.labels),
+        auc_ci=interval_of(aucs),
+        atd=atd(judged.distances[~np.isnan(judged.distances)].tolist()),
+        atd_ci=interval_of(atds),
         calibration_error=expected_calibration_error(judged.scores, judged.labels) if known else None,
-        judge_ms=judged.judge_ms,
+        seconds_per_1000=1000.0 * judged.seconds / max(1, len(judged.scores)),
     )
 
 
 def mean_row(rows: Sequence[InstructionRow], judged: Sequence[Judged]) -> InstructionRow:
-    """The mean over types of errors, as the thesis' tables have it; one model and one protocol."""
+    """The mean over types of errors, as the thesis' tables have it; one model and one protocol.
+
+    For its intervals homes are drawn once for all types: their episodes speak of the same walks.
+    """
+    aucs, atds = _figures_of_draws(judged)
+    episodes = sum(row.episodes for row in rows)
     return InstructionRow(
         model=rows[0].model,
         protocol=rows[0].protocol,
         error_type=MEAN,
-        episodes=sum(row.episodes for row in rows),
+        episodes=episodes,
         auc=_mean([row.auc for row in rows]),
-        auc_ci=_interval_of_mean(judged, Judged.auc_of),
+        auc_ci=interval_of(aucs),
         atd=_mean([row.atd for row in rows]),
-        atd_ci=_interval_of_mean(judged, Judged.atd_of),
+        atd_ci=interval_of(atds),
         calibration_error=_mean([row.calibration_error for row in rows]),
-        judge_ms=float(np.median([row.judge_ms for row in rows])),
+        seconds_per_1000=1000.0 * sum(one.seconds for one in judged) / max(1, episodes),
     )
 
 
@@ -156,7 +158,7 @@ def pair_rows(judged: Judged) -> list[PairRow]:
             protocol=judged.protocol,
             pair=pair,
             episodes=int((names == pair).sum()),
-            auc=judged.auc_of(np.flatnonzero(names == pair)),
+            auc=auc(judged.scores[names == pair], judged.labels[names == pair]),
         )
         for pair in sorted(set(judged.pairs) - {""})
     ]
@@ -227,30 +229,66 @@ def _mean(values: Sequence[float | None]) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-_Figure = Callable[[Judged, np.ndarray[tuple[int], np.dtype[np.int64]]], float | None]
+def _figures_of_draws(judged: Sequence[Judged]) -> tuple[Float64, Float64]:
+    """AUC and ATD, float64 [draws] each, of homes drawn again: means over types; NaN where none has any."""
+    homes = sorted({home for one in judged for home in one.homes})
+    if len(homes) < 2:
+        return np.full(1, np.nan), np.full(1, np.nan)
+    number = {home: k for k, home in enumerate(homes)}
+    draws = drawn_groups(len(homes))
+    aucs, atds = [], []
+    for one in judged:
+        group: Int64 = np.array([number[home] for home in one.homes], dtype=np.int64)
+        aucs.append(auc_of_draws(one.scores, one.labels, group, draws))
+        atds.append(mean_of_draws(one.distances, group, draws))
+    return _mean_of_known(np.stack(aucs)), _mean_of_known(np.stack(atds))
 
 
-def _interval_of_mean(judged: Sequence[Judged], figure: _Figure) -> Interval | None:
-    """Homes are drawn once for all types: their episodes speak of the same walks."""
-    homes = [home for one in judged for home in one.homes]
-    first = np.cumsum([0, *(len(one.homes) for one in judged)])
+def _mean_of_known(figures: Float64) -> Float64:
+    """float64 [types, draws] to [draws]."""
+    known = ~np.isnan(figures)
+    found = np.full(figures.shape[1], np.nan)
+    np.divide(
+        np.where(known, figures, 0.0).sum(axis=0), known.sum(axis=0), out=found, where=known.any(axis=0)
+    )
+    return found
 
-    def of_rows(rows: np.ndarray[tuple[int], np.dtype[np.int64]]) -> float | None:
-        return _mean(
-            [
-                figure(one, rows[(rows >= start) & (rows < end)] - start)
-                for one, start, end in zip(judged, first[:-1], first[1:], strict=True)
-            ]
-        )
 
-    return group_interval(homes, of_rows)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepTime:
+    """What a robot waits for: from one more viewpoint of a walk to the score and the doubted words."""
+
+    model: str
+    protocol: str
+    steps: int
+    median_ms: float
+    p95_ms: float
+
+
+def online_step_time(
+    name: str, model: ErrorModel, protocol: str, episodes: Sequence[ErrorEpisode]
+) -> StepTime | None:
+    """Walk each episode viewpoint by viewpoint, judging at each; None where there is no viewpoint."""
+    times = []
+    for episode in episodes:
+        viewpoints = episode.trajectory.viewpoints
+        for count in range(1, len(viewpoints) + 1):
+            began = time.perf_counter()
+            model.judge(Trajectory(viewpoints=viewpoints[:count]), episode.tokens)
+            times.append((time.perf_counter() - began) * 1e3)
+    if not times:
+        return None
+    median, p95 = np.percentile(times, (50.0, 95.0))
+    return StepTime(
+        model=name, protocol=protocol, steps=len(times), median_ms=float(median), p95_ms=float(p95)
+    )
 
 
 # The thesis' table 4.2 (R2RIE-CE, another simulator, its own visual features): AUC and ATD by type of error.
 THESIS: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "random (thesis)": {MEAN: (0.50, 11.26)},
-    "CLIP grounding (thesis)": {MEAN: (0.59, 9.22)},
-    "IEDL (thesis)": {
+    "th. random": {MEAN: (0.50, 11.26)},
+    "th. CLIP": {MEAN: (0.59, 9.22)},
+    "th. IEDL": {
         "direction": (0.58, 8.13),
         "room": (0.80, 7.73),
         "object": (0.74, 9.21),

@@ -38,7 +38,7 @@ def contestants_of(
         elif wanted and name in wanted:
             raise BadParameterError(
                 "iedl cannot be judged: it needs torch (pip install 'robustnav[learn]') and a model file "
-                "that holds it (`robustnav train iedl --minutes 25`)"
+                "that holds it (`robustnav train iedl`)"
             )
     return found
 

@@ -14,8 +14,12 @@ MAX_SEED = 1_000_000_000
 def instructions_command(
     out: Annotated[Path, typer.Option(help="folder to write the pack into; must not hold one")],
     homes: Annotated[int, typer.Option(min=1, max=100_000, help="how many homes to train in")] = 300,
-    unseen: Annotated[int | None, typer.Option(min=0, help="other homes; default: a fifth as many")] = None,
-    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="of the first home")] = 1,
+    unseen: Annotated[
+        int | None, typer.Option(min=0, max=100_000, help="other homes; default: a fifth as many")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=MAX_SEED, help="decides homes, which no other seed has, and errors")
+    ] = 1,
     walks: Annotated[int, typer.Option(min=1, max=100, help="through each home")] = 12,
     walks_seen: Annotated[int, typer.Option(min=0, max=100, help="more of them, for val_seen")] = 2,
     writers: Annotated[int, typer.Option(min=1, max=8, help="who each tell a walk")] = 2,
@@ -70,6 +74,9 @@ def r2r_command(
 def statistics_command(
     pack: Annotated[Path, typer.Argument(metavar="PACK", help="folder of a pack, ours or of real walks")],
     split: Annotated[list[str] | None, typer.Option(help="only this one; can be repeated")] = None,
+    common_sense: Annotated[
+        bool, typer.Option(help="wrong rooms adjoin the right ones, wrong objects share rooms with them")
+    ] = True,
     json_file: Annotated[
         Path | None, typer.Option("--json", help="write the figures to this file too")
     ] = None,
@@ -81,7 +88,7 @@ def statistics_command(
     from robustnav_nodes.benchmarks.report_file import check_writable, write_report
 
     check_writable(json_file)
-    rows = list(pack_statistics(pack, split or []))
+    rows = list(pack_statistics(pack, split or [], common_sense=common_sense))
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for column in ("protocol", "split", "type"):
         table.add_column(column, no_wrap=True)
@@ -105,6 +112,7 @@ def statistics_command(
         write_report(
             json_file,
             "instruction-statistics",
+            common_sense=common_sense,
             rows=[
                 {
                     "protocol": row.protocol,

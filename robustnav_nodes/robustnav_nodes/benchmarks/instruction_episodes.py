@@ -1,19 +1,17 @@
 """What models of instruction errors learn from and are judged on: a pack, or homes made for it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robustnav_msgs_py.errors import BadParameterError
 from robustnav_nodes.benchmarks.generated_instructions import (
-    UNSEEN_SEED,
     VAL_UNSEEN,
     GenerationPlan,
     generated_instructions,
 )
 from robustnav_nodes.benchmarks.instruction_bench import chosen_pairs
-from robustnav_nodes.instruction.common_sense import CommonSense, derive_common_sense
+from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
 from robustnav_nodes.instruction.injection import Injector, Protocol, error_episodes
 from robustnav_nodes.instruction.pack_errors import TRAIN
@@ -34,11 +32,10 @@ class Lessons:
     name: str
 
 
-def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
-    """Of a pack, or of `homes` homes of the seeds from `seed` on.
-
-    Raises BadFileError for a pack that is none, BadParameterError for seeds that are kept for judging.
-    """
+def lessons_of(
+    data: Path | None, split: str, homes: int, seed: int, say: Callable[[str], object] = lambda told: None
+) -> Lessons:
+    """Of a pack, or of `homes` homes made for `seed`. Raises BadFileError for a pack that is none."""
     if data is not None:
         pack = R2rPack(data)
         return Lessons(
@@ -47,45 +44,51 @@ def lessons_of(data: Path | None, split: str, homes: int, seed: int) -> Lessons:
             name=f"{data.name}, {split}",
         )
     plan = GenerationPlan(seed=seed, homes=homes, unseen=0)
-    if plan.last_seed >= UNSEEN_SEED:
-        raise BadParameterError(
-            f"homes from seed {UNSEEN_SEED} on are kept for judging; --seed {seed} with --homes {homes} "
-            "would learn from them"
-        )
-    instructions = list(generated_instructions(plan, TRAIN, _workers()))
+    instructions = list(generated_instructions(plan, TRAIN, _workers(), say))
     return Lessons(
         instructions=instructions,
         common_sense=derive_common_sense(instructions),
-        name=f"generated, homes {plan.seed} to {plan.last_seed}",
+        name=f"generated, {homes} homes of seed {seed}",
     )
 
 
 def bench_episodes(
-    data: Path | None, split: str, protocols: Sequence[Protocol], at_most: int | None, seed: int
+    data: Path | None,
+    split: str,
+    protocols: Sequence[Protocol],
+    at_most: int | None,
+    seed: int,
+    *,
+    common_sense: bool = True,
+    say: Callable[[str], object] = lambda told: None,
 ) -> Episodes:
     """Clean and perturbed episodes by protocol and type of error, `at_most` of each.
 
-    Those of the pack where it holds any, else put in anew by the seed. Raises BadFileError for a pack that is
+    Of each protocol those of the pack where it holds any, else put in anew by the seed; always so without
+    `common_sense`: any room may then replace any, and any object. Raises BadFileError for a pack that is
     none, or has no such split.
     """
-    found: Episodes = {}
     pack = R2rPack(data) if data is not None else None
-    if pack is not None and all(pack.has_episodes(split, protocol) for protocol in protocols):
-        for protocol in protocols:
+    found: Episodes = {}
+    for protocol in protocols:
+        if pack is not None and common_sense and pack.has_episodes(split, protocol):
             found[protocol] = {name: pack.episodes(split, protocol, name) for name in ERROR_TYPES}
-    elif pack is not None:
-        instructions = pack.instructions(split)
-        for protocol in protocols:
-            found[protocol] = _put_in(instructions, pack.common_sense(), protocol, seed)
-    else:
-        plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
-        instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers()))
-        common_sense = derive_common_sense(instructions)
-        for protocol in protocols:
-            found[protocol] = _put_in(instructions, common_sense, protocol, seed)
+    missing = [protocol for protocol in protocols if protocol not in found]
+    if missing:
+        if pack is None:
+            plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
+            instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers(), say))
+        else:
+            instructions = pack.instructions(split)
+        if not common_sense:
+            likely = anything_goes()
+        else:
+            likely = derive_common_sense(instructions) if pack is None else pack.common_sense()
+        for protocol in missing:
+            found[protocol] = episodes_put_in(instructions, likely, protocol, seed)
     return {
-        protocol: {name: chosen_pairs(part, at_most, seed) for name, part in by_type.items()}
-        for protocol, by_type in found.items()
+        protocol: {name: chosen_pairs(part, at_most, seed) for name, part in found[protocol].items()}
+        for protocol in protocols
     }
 
 
@@ -93,7 +96,7 @@ def _workers() -> int:
     return len(os.sched_getaffinity(0))
 
 
-def _put_in(
+def episodes_put_in(
     instructions: Sequence[Instruction], common_sense: CommonSense, protocol: Protocol, seed: int
 ) -> dict[str, list[ErrorEpisode]]:
     """Matched by the wording of the other half of the homes: by their own, what stands there fits best."""

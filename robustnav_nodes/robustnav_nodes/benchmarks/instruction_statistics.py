@@ -4,9 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from robustnav_nodes.benchmarks.instruction_episodes import episodes_put_in
+from robustnav_nodes.instruction.common_sense import anything_goes
 from robustnav_nodes.instruction.episodes import ERROR_TYPES
 from robustnav_nodes.instruction.injection import PROTOCOLS, ErrorStatistics, Protocol, error_statistics
 from robustnav_nodes.instruction.r2r_pack import R2rPack
+
+SEED = 1  # of the errors that are put in anew
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,16 +40,22 @@ class StatisticsRow:
     statistics: ErrorStatistics
 
 
-def pack_statistics(folder: Path, splits: list[str]) -> Iterator[StatisticsRow]:
+def pack_statistics(folder: Path, splits: list[str], *, common_sense: bool = True) -> Iterator[StatisticsRow]:
     """A row for each protocol, split (all where none is named) and type of error of the pack.
 
+    Without `common_sense` of errors that are put in anew, in which any room may replace any, and any object.
     Raises BadFileError where the pack cannot be read or has no such split.
     """
     pack = R2rPack(folder)
     for protocol in PROTOCOLS:
         for split in splits or pack.splits:
+            anew = (
+                None
+                if common_sense
+                else episodes_put_in(pack.instructions(split), anything_goes(), protocol, SEED)
+            )
             for error_type in ERROR_TYPES:
-                episodes = pack.episodes(split, protocol, error_type)
+                episodes = pack.episodes(split, protocol, error_type) if anew is None else anew[error_type]
                 yield StatisticsRow(
                     protocol=protocol, split=split, statistics=error_statistics(error_type, episodes)
                 )

@@ -16,6 +16,7 @@ from robustnav_nodes.benchmarks.r2r_sources import (
     BoxedObject,
     ScanViewpoint,
     SourceFolders,
+    check_boxes,
     read_boxes,
     read_categories,
     read_connectivity,
@@ -55,6 +56,7 @@ def build_r2r_pack(
     """
     if TRAIN not in splits:
         raise BadFileError(f"the splits {', '.join(splits)} lack {TRAIN}, of which common sense is learnt")
+    check_boxes(folders)
     writer = PackWriter(folder)
     paths = {split: read_paths(folders, split) for split in splits}
     labels = read_rooms(folders)

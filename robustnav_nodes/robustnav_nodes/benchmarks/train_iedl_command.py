@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 MAX_SEED = 2**31 - 1
 HOMES = 400
+EPOCHS = 30
 
 
 def train_iedl_command(
@@ -29,9 +30,13 @@ def train_iedl_command(
     homes: Annotated[
         int, typer.Option(min=2, max=10_000, help="how many homes to make, without --data")
     ] = HOMES,
+    epochs: Annotated[
+        int, typer.Option(min=0, max=1000, help="of the thesis' IEDL at most; 0: leave it out")
+    ] = EPOCHS,
     minutes: Annotated[
-        float, typer.Option(min=0.0, max=1000.0, help="at most, for the thesis' IEDL; 0: leave it out")
-    ] = 25.0,
+        float | None,
+        typer.Option(min=0.1, help="of wall time, after which no epoch of IEDL begins; default: any"),
+    ] = None,
     width: Annotated[int, typer.Option(min=16, max=1024, help="of IEDL; the thesis has 768")] = 256,
     resume: Annotated[bool, typer.Option("--resume", help="take up a training that was stopped")] = False,
 ) -> None:
@@ -53,12 +58,12 @@ def train_iedl_command(
     out.parent.mkdir(parents=True, exist_ok=True)
     check_writable(out)
     say = Console(highlight=False, soft_wrap=True).print
-    lessons = lessons_of(data, split, homes, seed)
+    lessons = lessons_of(data, split, homes, seed, say)
     say(f"learning from {len(lessons.instructions)} instructions: {lessons.name}")
     plan = TrainingPlan(
         data=lessons.name,
         seed=seed,
-        iedl=IedlSettings(minutes=minutes, width=width) if minutes > 0.0 else None,
+        iedl=IedlSettings(epochs=epochs, minutes=minutes, width=width) if epochs else None,
     )
     _, curve = train_models(lessons.instructions, lessons.common_sense, plan, out, resume=resume, say=say)
     if curve:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robustnav_nodes.instruction.concepts import DIRECTION, OBJECT, ROOM_TYPES_OF
-from robustnav_nodes.instruction.mentions import concepts_of_name, find_mentions
+from robustnav_nodes.instruction.concepts import HARDLY_LISTED, OBJECT, ROOM, ROOM_TYPES_OF
+from robustnav_nodes.instruction.mentions import Mention, concepts_of_name, find_mentions
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES, Trajectory
 from robustnav_nodes.instruction.verdict import Verdict
 
@@ -28,7 +28,8 @@ class EntityGrounding:
     """A room or object that was said and never seen is wrong: the thesis' CLIP alignment, by names.
 
     A room counts as seen where the evidence for its type once exceeded `ROOM_SEEN`. The score is the share of
-    what was said that was not seen.
+    what was said that was not seen; rooms without a type of evidence (closets) and doors, which no trajectory
+    can be relied on to name, are not looked up.
     """
 
     ROOM_SEEN = 0.25
@@ -38,17 +39,24 @@ class EntityGrounding:
         rooms = [
             max((at.rooms[k] for at in trajectory.viewpoints), default=0.0) for k in range(len(ROOM_TYPES))
         ]
-        said = [mention for mention in find_mentions(tokens) if mention.kind != DIRECTION]
+        said = [mention for mention in find_mentions(tokens) if _can_be_seen(mention)]
         missed = []
         for mention in said:
             if mention.kind == OBJECT:
                 found = mention.concept in seen
             else:
-                types = ROOM_TYPES_OF.get(mention.concept, ())
-                found = any(rooms[ROOM_TYPES.index(name)] >= self.ROOM_SEEN for name in types)
+                found = any(
+                    rooms[ROOM_TYPES.index(name)] >= self.ROOM_SEEN for name in ROOM_TYPES_OF[mention.concept]
+                )
             if not found:
                 missed.append(mention)
         return Verdict(
             error_score=len(missed) / len(said) if said else 0.0,
             doubts=tuple((mention.start, 1.0) for mention in missed),
         )
+
+
+def _can_be_seen(mention: Mention) -> bool:
+    if mention.kind == ROOM:
+        return mention.concept in ROOM_TYPES_OF
+    return mention.kind == OBJECT and mention.concept not in HARDLY_LISTED

@@ -6,6 +6,8 @@ The concepts and the pairs of opposites are those of the thesis (4.1.2); the for
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from robustnav_msgs_py.errors import BadParameterError
+
 ROOM, OBJECT, DIRECTION = "room", "object", "direction"
 KINDS = (DIRECTION, OBJECT, ROOM)
 
@@ -167,8 +169,17 @@ ROOM_TYPES_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 
 
+# Doors are nearly everywhere and listed now and then: whether one was there cannot be looked up.
+HARDLY_LISTED = frozenset({"door"})
+
+
 def pair_of(direction: str) -> str:
-    """The pair of opposites that a direction belongs to: "left/right" of "right"."""
+    """The pair of opposites that a direction belongs to: "left/right" of "right".
+
+    Raises BadParameterError for a word that is no direction.
+    """
+    if direction not in OPPOSITES:
+        raise BadParameterError(f"{direction!r} is no direction; there are {', '.join(OPPOSITES)}")
     return PAIRS[direction] if direction in PAIRS else PAIRS[OPPOSITES[direction]]
 
 

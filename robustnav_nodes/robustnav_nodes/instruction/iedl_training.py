@@ -15,7 +15,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
 from robustnav_nodes.instruction.iedl import MAX_WORDS, Iedl, IedlShape, iedl_loss
@@ -41,14 +41,17 @@ _JUDGED_AT_MOST = 3000  # episodes after each epoch
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IedlSettings:
-    """Sizes and patience of a training; the thesis' width is 768."""
+    """Sizes and patience of a training; the thesis' width is 768.
+
+    Epochs and patience end it, so that it ends alike on every machine, unless `minutes` are set and over.
+    """
 
     width: int = 256
     layers: int = 4
     batch: int = 64
     epochs: int = 30
     patience: int = 4  # epochs without a better AUC, then it ends
-    minutes: float = 25.0  # of wall time, then it ends
+    minutes: float | None = None  # of wall time; after so many no epoch begins
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +75,9 @@ class _Lesson:
 class IedlTraining:
     """Learns from the homes of `lessons`, judged on those of `exam`; one thread.
 
-    Takes up `checkpoint` where there is one. Raises BadFileError where that is another training's.
+    Takes up `checkpoint` where there is one, and then ends as if it had never been stopped. `data` is a
+    digest of what is learned from. Raises BadFileError where the checkpoint is another training's,
+    BadParameterError where no error can be put into the exam or the lessons.
     """
 
     def __init__(
@@ -84,11 +89,13 @@ class IedlTraining:
         settings: IedlSettings,
         *,
         seed: int,
+        data: str,
         checkpoint: Path,
     ) -> None:
         torch.manual_seed(seed)
         self._settings = settings
         self._seed = seed
+        self._data = data
         self._checkpoint = checkpoint
         self._encoder = encoder
         self._words = learn_words(one.tokens for one in lessons)
@@ -97,11 +104,17 @@ class IedlTraining:
         self._encoded: list[NDArray[np.float32]] = []
         self._injector = Injector(common_sense=anything_goes())
         self._exam = self._lessons_of(_judged(exam, Injector(common_sense=common_sense), seed))
+        if not self._exam or not self._put_in(0):
+            raise BadParameterError(
+                f"{len(lessons) + len(exam)} instructions are too few to learn IEDL from: no error can be "
+                "put into those of some homes"
+            )
         shape = IedlShape(
             words=2 + len(self._words), places=encoder.width, width=settings.width, layers=settings.layers
         )
         self._network = Iedl(shape)
         self._optimiser = torch.optim.AdamW(self._network.parameters(), lr=_RATE, weight_decay=_WEIGHT_DECAY)
+        self._chance = torch.get_rng_state()  # what dropout draws from
         self._steps = 0
         self._best = {name: value.clone() for name, value in self._network.state_dict().items()}
         self.curve: list[EpochFigures] = []
@@ -110,49 +123,53 @@ class IedlTraining:
 
     @property
     def is_over(self) -> bool:
-        """No time left, no epoch left, or no better for so long."""
+        """No epoch left, no better for so long, or no time left."""
         best = max(range(len(self.curve)), key=lambda k: self.curve[k].auc, default=0)
         seconds = self.curve[-1].seconds if self.curve else 0.0
         return (
             len(self.curve) >= self._settings.epochs
             or len(self.curve) - 1 - best >= self._settings.patience
-            or seconds >= self._settings.minutes * 60.0
+            or (self._settings.minutes is not None and seconds >= self._settings.minutes * 60.0)
         )
 
     def run(self, say: Say) -> IedlModel:
         """Train until it is over; the network of the best epoch."""
-        while not self.is_over:
-            began_s = time.monotonic()
-            before_s = self.curve[-1].seconds if self.curve else 0.0
-            loss = self._epoch(len(self.curve), deadline_s=began_s + self._settings.minutes * 60.0 - before_s)
-            figures = EpochFigures(
-                epoch=len(self.curve) + 1,
-                loss=loss,
-                auc=self._judge(),
-                seconds=before_s + time.monotonic() - began_s,
-            )
-            if all(figures.auc > earlier.auc for earlier in self.curve):
-                self._best = {name: value.clone() for name, value in self._network.state_dict().items()}
-            self.curve.append(figures)
-            self._save()
-            say(f"IEDL, epoch {figures.epoch}: loss {loss:.3f}, AUC on homes left out {figures.auc:.3f}")
+        with torch.random.fork_rng(devices=[]):
+            torch.set_rng_state(self._chance)
+            while not self.is_over:
+                began_s = time.monotonic()
+                before_s = self.curve[-1].seconds if self.curve else 0.0
+                loss = self._epoch(len(self.curve))
+                figures = EpochFigures(
+                    epoch=len(self.curve) + 1,
+                    loss=loss,
+                    auc=self._judge(),
+                    seconds=before_s + time.monotonic() - began_s,
+                )
+                if all(figures.auc > earlier.auc for earlier in self.curve):
+                    self._best = {name: value.clone() for name, value in self._network.state_dict().items()}
+                self.curve.append(figures)
+                self._save()
+                say(f"IEDL, epoch {figures.epoch}: loss {loss:.3f}, AUC on homes left out {figures.auc:.3f}")
         self._network.load_state_dict(self._best)
         return IedlModel(network=self._network.eval(), words=self._words, encoder=self._encoder)
 
-    def _epoch(self, number: int, deadline_s: float) -> float:
+    def _put_in(self, epoch: int) -> list[ErrorEpisode]:
+        """The lessons of an epoch: each instruction with one type of error, another one each time."""
         episodes: list[ErrorEpisode] = []
-        for k, error_type in enumerate(ERROR_TYPES):  # each instruction with one type of error an epoch
-            part = self._lessons[(k + number) % len(ERROR_TYPES) :: len(ERROR_TYPES)]
-            episodes += error_episodes(part, error_type, self._injector, self._seed + 1 + number)
-        lessons = self._lessons_of(episodes)
+        for k, error_type in enumerate(ERROR_TYPES):
+            part = self._lessons[(k + epoch) % len(ERROR_TYPES) :: len(ERROR_TYPES)]
+            episodes += error_episodes(part, error_type, self._injector, self._seed + 1 + epoch)
+        return episodes
+
+    def _epoch(self, number: int) -> float:
+        lessons = self._lessons_of(self._put_in(number))
         order = np.random.default_rng([self._seed, number]).permutation(len(lessons))
         self._network.train()
         losses = []
         for start in range(0, len(order), self._settings.batch):
             batch = [lessons[k] for k in order[start : start + self._settings.batch]]
             losses.append(self._step(batch))
-            if time.monotonic() >= deadline_s:
-                break
         return float(np.mean(losses)) if losses else 0.0
 
     def _step(self, batch: Sequence[_Lesson]) -> float:
@@ -208,8 +225,9 @@ class IedlTraining:
 
     def _facts(self) -> dict[str, Any]:
         return {
-            "settings": asdict(self._settings) | {"minutes": 0.0, "epochs": 0},  # may be prolonged
+            "settings": asdict(self._settings) | {"minutes": None, "epochs": 0},  # may be prolonged
             "seed": self._seed,
+            "data": self._data,
             "words": self._words,
         }
 
@@ -221,6 +239,7 @@ class IedlTraining:
             "best": self._best,
             "optimiser": self._optimiser.state_dict(),
             "steps": self._steps,
+            "chance": torch.get_rng_state(),
             "curve": [asdict(figures) for figures in self.curve],
         }
         torch.save(state, unfinished)
@@ -238,6 +257,7 @@ class IedlTraining:
             self._optimiser.load_state_dict(state["optimiser"])
             self._best, self._steps = state["best"], int(state["steps"])
             self.curve = [EpochFigures(**row) for row in state["curve"]]
+            self._chance = state["chance"]
         except (OSError, EOFError, UnpicklingError, KeyError, RuntimeError, TypeError, ValueError) as error:
             raise BadFileError(
                 f"the checkpoint {str(self._checkpoint)!r} cannot be taken up ({type(error).__name__}): "

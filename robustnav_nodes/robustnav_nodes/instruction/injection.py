@@ -14,7 +14,14 @@ from typing import Literal
 import numpy as np
 
 from robustnav_nodes.instruction.common_sense import CommonSense
-from robustnav_nodes.instruction.concepts import DIRECTION, KINDS, OPPOSITES, is_plural, put_in_form
+from robustnav_nodes.instruction.concepts import (
+    DIRECTION,
+    HARDLY_LISTED,
+    KINDS,
+    OPPOSITES,
+    is_plural,
+    put_in_form,
+)
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction, WrongSpan
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
 from robustnav_nodes.instruction.wording import Wording
@@ -24,8 +31,6 @@ PROTOCOLS: tuple[Protocol, ...] = ("uniform", "matched")
 
 MIN_TOKENS = 10  # instructions of fewer are too simple (the thesis' threshold has no number)
 _MATCHED_TRIES = 40  # draws until a kind counts as not replaceable in an instruction
-# A door is nearly everywhere, and no list of objects holds it: whether one was there cannot be looked up.
-_NEVER_MATCHED = frozenset({"door"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,12 +91,12 @@ class Injector:
     def _others(self, mention: Mention) -> tuple[str, ...]:
         if mention.kind == DIRECTION:
             return (OPPOSITES[mention.concept],)
-        if self.wording is not None and mention.concept in _NEVER_MATCHED:
+        if self.wording is not None and mention.concept in HARDLY_LISTED:
             return ()
         others = self.common_sense.of(mention.kind, mention.concept)
         if self.wording is None:
             return others
-        return tuple(other for other in others if other not in _NEVER_MATCHED)
+        return tuple(other for other in others if other not in HARDLY_LISTED)
 
 
 def error_episodes(

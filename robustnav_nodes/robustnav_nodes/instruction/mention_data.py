@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
@@ -76,6 +77,10 @@ def rows_of(
         wrong += [int(is_wrong(m, one)) for m in mentions]
         if number and number % _TOLD_EVERY == 0:
             say(f"described {number} of {len(episodes)} episodes")
+    if not values or not sum(map(len, values)):
+        raise BadParameterError(
+            f"too few to learn from: in {len(episodes)} episodes nothing is mentioned that may be wrong"
+        )
     return LearnedRows(
         values=np.concatenate(values),
         episode=np.array(episode, dtype=np.int64),

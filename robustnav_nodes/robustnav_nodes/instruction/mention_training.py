@@ -101,6 +101,7 @@ def learn_trees(
     """Ensembles for one kind of mention, each from other clean rows and other chances."""
     from sklearn.ensemble import HistGradientBoostingClassifier
 
+    _require_both(rows.wrong[rows.kind == KINDS.index(kind)], f"{kind} words")
     found = []
     for number in range(settings.ensembles):
         rng = np.random.default_rng([seed, number])
@@ -123,10 +124,20 @@ def learn_trees(
     return tuple(found)
 
 
+def _require_both(wrong: NDArray[np.int64], what: str) -> None:
+    """Raises BadParameterError where nothing of it is wrong, or all."""
+    if len(np.unique(wrong)) < 2:
+        raise BadParameterError(
+            f"too few to learn from: of {len(wrong)} {what} {int(wrong.sum())} are wrong; "
+            "right ones and wrong ones are needed"
+        )
+
+
 def learn_head(odds: Float64, rows: LearnedRows) -> Float64:
     """Logistic regression of the label on the episodes' summaries; `odds` of trees that did not see them."""
     from sklearn.linear_model import LogisticRegression
 
+    _require_both(rows.label, "instructions, in the homes that are left out to calibrate,")
     starts = np.searchsorted(rows.episode, np.arange(len(rows.label) + 1))
     summary = np.zeros((len(rows.label), SUMMARY))
     names = np.array(KINDS)

@@ -1,8 +1,9 @@
 """How well errors are detected, localised and calibrated: AUC, ATD (thesis eq. 4.1), ECE, temperature."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 from scipy.stats import rankdata
 
@@ -10,6 +11,7 @@ from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Float64
 
 Interval = tuple[float, float]
+Int64 = NDArray[np.int64]
 RESAMPLES = 1000
 _PERCENTILES = (2.5, 97.5)
 _SURE = 1e-6  # probabilities are kept this far from 0 and 1
@@ -45,28 +47,57 @@ def atd(distances: Sequence[float]) -> float | None:
     return float(np.mean(distances)) if len(distances) else None
 
 
-def group_interval(
-    groups: Sequence[str],
-    figure: Callable[[np.ndarray[tuple[int], np.dtype[np.int64]]], float | None],
-    seed: int = 0,
-) -> Interval | None:
-    """95 % interval of `figure(rows)` over groups (homes) drawn again: episodes of one home are alike.
+def drawn_groups(count: int, seed: int = 0) -> Float64:
+    """float64 [RESAMPLES, count]: how often each of `count` groups (homes) comes, drawn again.
 
-    `figure` is given the row numbers of a resample, and may answer None, which is left out.
+    Episodes of one home are alike, so that homes are what a bootstrap draws. The same seed, the same draws.
     """
-    names = sorted(set(groups))
-    rows = {name: np.flatnonzero([group == name for group in groups]) for name in names}
-    rng = np.random.default_rng(seed)
-    found = []
-    for _ in range(RESAMPLES if len(names) > 1 else 0):
-        drawn = np.concatenate([rows[names[k]] for k in rng.integers(len(names), size=len(names))])
-        value = figure(drawn)
-        if value is not None:
-            found.append(value)
-    if not found:
+    return (
+        np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), RESAMPLES).astype(float)
+    )
+
+
+def auc_of_draws(scores: Float64, labels: Float64, group: Int64, draws: Float64) -> Float64:
+    """float64 [draws]: the AUC of each draw of groups; NaN where one of the classes is missing.
+
+    `group` int64 [n] holds the number of each episode's group, a column of `draws`.
+    """
+    groups = draws.shape[1]
+    positive = labels > 0.5
+    wrong, right = scores[positive], scores[~positive]
+    wrong_in, right_in = group[positive], group[~positive]
+    ahead = np.zeros((groups, groups))  # [g, h]: pairs of a wrong one of g above a right one of h
+    for h in np.unique(right_in):
+        ordered = np.sort(right[right_in == h])
+        below = np.searchsorted(ordered, wrong, "left") + np.searchsorted(ordered, wrong, "right")
+        ahead[:, h] = np.bincount(wrong_in, weights=below / 2.0, minlength=groups)
+    pairs = (draws @ np.bincount(wrong_in, minlength=groups)) * (
+        draws @ np.bincount(right_in, minlength=groups)
+    )
+    return _quotient(((draws @ ahead) * draws).sum(axis=1), pairs)
+
+
+def mean_of_draws(values: Float64, group: Int64, draws: Float64) -> Float64:
+    """float64 [draws]: the mean of the values that are not NaN in each draw of groups; NaN without any."""
+    known = ~np.isnan(values)
+    groups = draws.shape[1]
+    total = draws @ np.bincount(group[known], weights=values[known], minlength=groups)
+    return _quotient(total, draws @ np.bincount(group[known], minlength=groups))
+
+
+def interval_of(figures: Float64) -> Interval | None:
+    """The middle 95 % of what resamples gave, NaN left out; None where nothing is left."""
+    known = figures[~np.isnan(figures)]
+    if not len(known):
         return None
-    low, high = np.percentile(found, _PERCENTILES)
+    low, high = np.percentile(known, _PERCENTILES)
     return float(low), float(high)
+
+
+def _quotient(above: Float64, below: Float64) -> Float64:
+    found = np.full(len(above), np.nan)
+    np.divide(above, below, out=found, where=below > 0.0)
+    return found
 
 
 def reliability(scores: Float64, labels: Float64, bins: int = 10) -> list[tuple[float, float, int]]:

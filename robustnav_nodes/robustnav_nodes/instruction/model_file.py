@@ -22,6 +22,8 @@ from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
 from robustnav_nodes.instruction.mention_model import SUMMARY, MentionModel, Scorer
 from robustnav_nodes.instruction.place_model import PlaceModel
+from robustnav_nodes.instruction.side_model import FEATURES as SIDE_FEATURES
+from robustnav_nodes.instruction.side_model import SideModel
 from robustnav_nodes.instruction.surprise import Surprise, surprise_from_arrays
 from robustnav_nodes.instruction.trees import trees_from_arrays
 from robustnav_nodes.instruction.wording import Wording
@@ -30,8 +32,8 @@ if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_model import IedlModel
 
 SHIPPED = Path(__file__).with_name("weights.npz")
-FORMAT = 1
-_PLACES = ("mean", "scale", "hidden", "out", "log_share", "turns", "climbs")
+FORMAT = 2
+_PLACES = ("mean", "scale", "hidden", "out", "log_share", "climbs")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +77,8 @@ def save_model(path: Path, model: LearnedModel) -> None:
     }
     for part in _PLACES:
         arrays[f"places/{part}"] = getattr(model.knowledge.places, part).astype(np.float32)
+    arrays["sides/hidden"] = model.knowledge.places.sides.hidden.astype(np.float32)
+    arrays["sides/out"] = model.knowledge.places.sides.out.astype(np.float32)
     scorers = []
     for (protocol, blind), scorer in model.scorers.items():
         name = f"{protocol}/{'blind' if blind else 'seeing'}"
@@ -145,7 +149,10 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
     return LearnedModel(
         features=tuple(header["features"]),
         knowledge=Knowledge(
-            places=PlaceModel(**{part: arrays[f"places/{part}"].astype(np.float64) for part in _PLACES}),
+            places=PlaceModel(
+                sides=_sides(arrays),
+                **{part: arrays[f"places/{part}"].astype(np.float64) for part in _PLACES},
+            ),
             wording=Wording(
                 words={word: k for k, word in enumerate(words)},
                 base=_shaped(arrays["wording/base"].astype(np.float64), (len(CONCEPTS),)),
@@ -158,6 +165,13 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
         card=header["card"],
         iedl_arrays={name: array for name, array in arrays.items() if name.startswith("iedl")},
         iedl_shape=header["iedl"],
+    )
+
+
+def _sides(arrays: Mapping[str, NDArray[Any]]) -> SideModel:
+    hidden, out = (arrays[f"sides/{part}"].astype(np.float64) for part in ("hidden", "out"))
+    return SideModel(
+        hidden=_shaped(hidden, (SIDE_FEATURES + 1, hidden.shape[1])), out=_shaped(out, (hidden.shape[1] + 1,))
     )
 
 

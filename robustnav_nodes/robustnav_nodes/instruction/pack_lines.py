@@ -3,6 +3,7 @@
 import gzip
 import hashlib
 import json
+import math
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,17 @@ from typing import Any
 from robustnav_msgs_py.errors import BadFileError
 
 SUMS = "SHA256SUMS"
+
+
+def as_number(value: object) -> float | None:
+    """The value as a float; None where it is no number, or one that no float holds (1e400, NaN)."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
 
 
 class Row:
@@ -31,10 +43,10 @@ class Row:
         return value
 
     def number(self, name: str) -> float:
-        value = self._get(name)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise self.wrong(name, value, "a number")
-        return float(value)
+        value = as_number(self._get(name))
+        if value is None:
+            raise self.wrong(name, self._get(name), "a finite number")
+        return value
 
     def whole(self, name: str) -> int:
         value = self._get(name)
@@ -56,9 +68,10 @@ class Row:
 
     def numbers(self, name: str, count: int) -> tuple[float, ...]:
         value = self.items(name)
-        if len(value) != count or any(isinstance(n, bool) or not isinstance(n, (int, float)) for n in value):
+        found = tuple(number for item in value if (number := as_number(item)) is not None)
+        if len(value) != count or len(found) != count:
             raise self.wrong(name, value, f"{count} numbers")
-        return tuple(map(float, value))
+        return found
 
     def rows(self, name: str) -> list["Row"]:
         return [Row(item, f"{self.where}, {name}[{k}],") for k, item in enumerate(self.items(name))]
@@ -151,5 +164,5 @@ class PackFolder:
 def _parsed(text: str, where: str) -> Any:
     try:
         return json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BadFileError(f"{where} is not JSON: {error}") from error

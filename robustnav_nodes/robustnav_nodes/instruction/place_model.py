@@ -1,8 +1,8 @@
 """What people mention at a place that looks like this one: log P(concept | place) / P(concept).
 
 Rooms and objects: a small network over the room evidence here, before and after, the objects in sight and the
-climb. Left, right, up, down: counts of turns and climbs. It looks at each viewpoint alone; where on the way a
-mention belongs is `alignment`'s business.
+climb. Left and right: `side_model`. Up and down: counts of climbs. It looks at each viewpoint alone; where on
+the way a mention belongs is `alignment`'s business.
 """
 
 from collections.abc import Sequence
@@ -13,30 +13,29 @@ import numpy as np
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.alignment import place_mentions
 from robustnav_nodes.instruction.concepts import CONCEPT_NUMBER, CONCEPTS, DIRECTION, FIRST_OBJECT
-from robustnav_nodes.instruction.direction_phrases import PHRASES, phrase_of
 from robustnav_nodes.instruction.mentions import Mention
 from robustnav_nodes.instruction.scene import Scene
+from robustnav_nodes.instruction.side_model import SIDES, SideModel, learn_sides, side_features, walk_sides
 
-TURN_EDGES = np.radians([-135.0, -100.0, -70.0, -45.0, -25.0, -10.0, 10.0, 25.0, 45.0, 70.0, 100.0, 135.0])
 CLIMB_EDGES_M = np.array([-1.5, -0.7, -0.25, -0.08, 0.08, 0.25, 0.7, 1.5])
 _NEAR_M = 2.3
 _FADE_M = 2.0
+_EPOCHS = ((10, 2), (10, 2), (60, 6))  # of the networks for things and for sides, by round
 _LIMIT = 4.0  # of one mention's log evidence: nothing that is seen or missed decides alone
 
-LEFT, RIGHT = (CONCEPT_NUMBER[DIRECTION, word] for word in ("left", "right"))
 UP, DOWN = (CONCEPT_NUMBER[DIRECTION, word] for word in ("up", "down"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaceModel:
-    """Weights of the network, the concepts' overall shares, and both tables of log ratios."""
+    """Weights of the network, the concepts' overall shares, the sides, and the table of the climbs."""
 
     mean: Float64
     scale: Float64
     hidden: Float64  # [features + 1, units]
     out: Float64  # [units + 1, objects and rooms]
     log_share: Float64
-    turns: Float64  # [phrases, bins], of "left"; of "right" it is the mirror image
+    sides: SideModel
     climbs: Float64  # [bins], of "up"
 
     def evidence(self, scene: Scene) -> Float64:
@@ -50,20 +49,31 @@ class PlaceModel:
         return kept
 
     def of_mentions(
-        self, scene: Scene, tokens: Sequence[str], mentions: Sequence[Mention], at_places: Float64
+        self,
+        scene: Scene,
+        tokens: Sequence[str],
+        mentions: Sequence[Mention],
+        at_places: Float64,
+        *,
+        opposite: bool = False,
     ) -> Float64:
-        """float64 [M, T]: log evidence of each mention at each viewpoint; `at_places` is `evidence`'s."""
+        """float64 [M, T]: log evidence of each mention at each viewpoint; `at_places` is `evidence`'s.
+
+        `opposite`: as if each side and each way up or down were its opposite.
+        """
         found = np.zeros((len(mentions), len(scene)))
-        turn_bins, climb_bins = turn_bins_of(scene), climb_bins_of(scene)
+        climb_bins = climb_bins_of(scene)
+        walk = walk_sides(scene)
+        turned = -1.0 if opposite else 1.0
         for m, mention in enumerate(mentions):
             number = CONCEPT_NUMBER[mention.kind, mention.concept]
             if number >= FIRST_OBJECT:
                 found[m] = at_places[:, number - FIRST_OBJECT]
-            elif number in (LEFT, RIGHT):
-                table = self.turns[phrase_of(tokens, mention)]
-                found[m] = (table if number == LEFT else table[::-1])[turn_bins]
+            elif mention.concept in SIDES:
+                sign = turned * SIDES[mention.concept]
+                found[m] = self.sides.log_ratio(side_features(walk, scene, tokens, mentions, m, sign))
             elif number in (UP, DOWN):
-                found[m] = (self.climbs if number == UP else self.climbs[::-1])[climb_bins]
+                found[m] = (self.climbs if (number == UP) != opposite else self.climbs[::-1])[climb_bins]
         return found
 
 
@@ -92,11 +102,6 @@ def place_features(scene: Scene) -> Float64:
     ).astype(float)
 
 
-def turn_bins_of(scene: Scene) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    """The bin of the turn at each viewpoint; mirrored bins are counted from the other end."""
-    return np.searchsorted(TURN_EDGES, scene.turn_rad)
-
-
 def climb_bins_of(scene: Scene) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     """The bin of the climb around each viewpoint."""
     z = scene.xyz_m[:, 2]
@@ -120,25 +125,23 @@ def said_at(tokens: Sequence[str], mentions: Sequence[Mention]) -> Float64:
     return np.array([(m.start + (m.length - 1) / 2.0) / last for m in mentions], dtype=float)
 
 
-def learn_places(
-    scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: int, epochs: Sequence[int] = (10, 10, 60)
-) -> PlaceModel:
+def learn_places(scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: int) -> PlaceModel:
     """Expectation and maximisation: place the mentions, learn what is said there, place them anew.
 
-    `epochs` has one number for each round: only the last network has to be a good one.
+    Only the networks of the last round have to be good ones.
     """
     features = [place_features(scene) for scene in scenes]
     first = np.concatenate([[0], np.cumsum([len(scene) for scene in scenes])])
     rows = np.concatenate(features)
     mean, scale = rows.mean(axis=0), rows.std(axis=0) + 0.05
     x = (rows - mean) / scale
-    turn_bins = [turn_bins_of(scene) for scene in scenes]
     climb_bins = [climb_bins_of(scene) for scene in scenes]
+    side_rows = _side_rows(scenes, said)
     model: PlaceModel | None = None
     concepts = len(CONCEPTS) - FIRST_OBJECT
-    for number, epochs_of_round in enumerate(epochs):
+    for number, (epochs, side_epochs) in enumerate(_EPOCHS):
         counts = np.zeros((len(rows), concepts))
-        turns = np.full((PHRASES, len(TURN_EDGES) + 1), 2.0)
+        placed_sides: list[Float64] = []
         climbs = np.full(len(CLIMB_EDGES_M) + 1, 2.0)
         evidence = [model.evidence(scene) for scene in scenes] if model is not None else None
         for one in said:
@@ -154,14 +157,12 @@ def learn_places(
                 concept = CONCEPT_NUMBER[mention.kind, mention.concept]
                 if concept >= FIRST_OBJECT:
                     counts[first[one.walk] : first[one.walk + 1], concept - FIRST_OBJECT] += placed[m]
-                elif concept in (LEFT, RIGHT):
-                    bins = turn_bins[one.walk]
-                    mirrored = bins if concept == LEFT else len(TURN_EDGES) - bins
-                    np.add.at(turns[phrase_of(one.tokens, mention)], mirrored, placed[m])
+                elif mention.concept in SIDES:
+                    placed_sides.append(placed[m])
                 elif concept in (UP, DOWN):
                     bins = climb_bins[one.walk]
                     np.add.at(climbs, bins if concept == UP else len(CLIMB_EDGES_M) - bins, placed[m])
-        hidden, out = _fit_network(x, counts, seed + number, epochs_of_round)
+        hidden, out = _fit_network(x, counts, seed + number, epochs)
         share = counts.sum(axis=0) + 1.0
         model = PlaceModel(
             mean=mean,
@@ -169,11 +170,22 @@ def learn_places(
             hidden=hidden,
             out=out,
             log_share=np.log(share / share.sum()),
-            turns=_log_ratio(turns, np.bincount(np.concatenate(turn_bins), minlength=turns.shape[1])),
+            sides=learn_sides(side_rows, placed_sides, seed=seed + number, epochs=side_epochs),
             climbs=_log_ratio(climbs, np.bincount(np.concatenate(climb_bins), minlength=len(climbs))),
         )
     assert model is not None
     return model
+
+
+def _side_rows(scenes: Sequence[Scene], said: Sequence[SaidOnWalk]) -> list[Float64]:
+    """The rows of every side that was said, [T, features] each, in the order in which they are said."""
+    walks = [walk_sides(scene) for scene in scenes]
+    return [
+        side_features(walks[one.walk], scenes[one.walk], one.tokens, one.mentions, m, SIDES[mention.concept])
+        for one in said
+        for m, mention in enumerate(one.mentions)
+        if mention.concept in SIDES
+    ]
 
 
 def _log_ratio(counts: Float64, everywhere: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Float64:
@@ -187,6 +199,8 @@ def _log_ratio(counts: Float64, everywhere: np.ndarray[tuple[int], np.dtype[np.i
 def _fit_network(x: Float64, counts: Float64, seed: int, epochs: int) -> tuple[Float64, Float64]:
     import torch
 
+    from robustnav_nodes.instruction.small_network import teach
+
     torch.manual_seed(seed)
     units = 96
     network = torch.nn.Sequential(
@@ -196,25 +210,13 @@ def _fit_network(x: Float64, counts: Float64, seed: int, epochs: int) -> tuple[F
         torch.nn.Dropout(0.3),
         torch.nn.Linear(units, counts.shape[1]),
     )
-    optimiser = torch.optim.AdamW(network.parameters(), lr=3e-3, weight_decay=0.02)
     inputs = torch.from_numpy(x.astype(np.float32))
     targets = torch.from_numpy(counts.astype(np.float32))
-    batch = 512
-    steps = epochs * (len(x) // batch + 1)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=3e-3, total_steps=steps)
-    order = torch.Generator().manual_seed(seed)
-    network.train()
-    for _ in range(epochs):
-        shuffled = torch.randperm(len(x), generator=order)
-        for start in range(0, len(x) + 1 - (len(x) % batch == 0), batch):
-            rows = shuffled[start : start + batch]
-            if not len(rows):
-                continue
-            logs = torch.log_softmax(network(inputs[rows]), dim=1)
-            loss = -(targets[rows] * logs).sum() / targets[rows].sum().clamp(min=1.0)
-            optimiser.zero_grad()
-            loss.backward()
-            optimiser.step()
-            schedule.step()
+
+    def loss_of(some: torch.Tensor) -> torch.Tensor:
+        logs = torch.log_softmax(network(inputs[some]), dim=1)
+        return -(targets[some] * logs).sum() / targets[some].sum().clamp(min=1.0)
+
+    teach(network, loss_of, len(x), rate=3e-3, decay=0.02, batch=512, epochs=epochs, seed=seed)
     weights = [parameter.detach().double().numpy() for parameter in network.parameters()]
     return (np.vstack([weights[0].T, weights[1]]), np.vstack([weights[2].T, weights[3]]))

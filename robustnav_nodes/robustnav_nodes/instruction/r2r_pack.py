@@ -13,10 +13,10 @@ from pathlib import Path
 
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.instruction.common_sense import CommonSense
-from robustnav_nodes.instruction.concepts import KINDS
+from robustnav_nodes.instruction.concepts import DIRECTION, KINDS, OPPOSITES
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction, WrongSpan
 from robustnav_nodes.instruction.injection import Protocol
-from robustnav_nodes.instruction.pack_lines import PackFolder, Row
+from robustnav_nodes.instruction.pack_lines import PackFolder, Row, as_number
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import (
     ROOM_TYPES,
@@ -43,6 +43,7 @@ class PackPath:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Place:
+    scan: str
     x_m: float
     y_m: float
     z_m: float
@@ -76,6 +77,7 @@ class R2rPack:
         self._places: dict[str, _Place] = {}
         for row in self._folder.rows("viewpoints.jsonl.gz"):
             self._places[row.text("vp")] = _Place(
+                scan=row.text("scan"),
                 x_m=row.number("x"),
                 y_m=row.number("y"),
                 z_m=row.number("z"),
@@ -110,8 +112,13 @@ class R2rPack:
                     f"the pack {str(self._folder.path)!r} has no split {split!r}; "
                     f"it has {', '.join(self.splits)}"
                 )
-            read = map(self._path, self._folder.rows(f"r2r_{split}.jsonl.gz"))
-            self._paths[split] = {path.path_id: path for path in read}
+            found: dict[int, PackPath] = {}
+            for row in self._folder.rows(f"r2r_{split}.jsonl.gz"):
+                path = self._path(row)
+                if path.path_id in found:
+                    raise row.wrong("path_id", path.path_id, "another number than the paths before")
+                found[path.path_id] = path
+            self._paths[split] = found
         return self._paths[split]
 
     def instructions(self, split: str) -> list[Instruction]:
@@ -126,21 +133,6 @@ class R2rPack:
             for path in self.paths(split).values()
             for number, text in enumerate(path.instructions)
         ]
-
-    def alignments(self, split: str) -> list[tuple[Instruction, list[tuple[int, int, int]]]]:
-        """Instructions with people's alignment, (words, first, last viewpoint) a chunk; not for train."""
-        found = []
-        for row in self._folder.rows(f"r2r_{split}.jsonl.gz"):
-            path = self.paths(split)[row.whole("path_id")]
-            for number, chunks in enumerate(row.items("sub_instructions")):
-                said = Instruction(
-                    key=f"{path.path_id}_{number}",
-                    group=path.scan,
-                    tokens=tokenized(path.instructions[number]),
-                    trajectory=path.trajectory,
-                )
-                found.append((said, [(len(words), first, last) for words, first, last in chunks]))
-        return found
 
     def has_episodes(self, split: str, protocol: Protocol) -> bool:
         """Whether the pack holds errors of every type for a split."""
@@ -167,11 +159,16 @@ class R2rPack:
         if unknown:
             raise row.wrong("path", unknown[0], "viewpoints of viewpoints.jsonl.gz")
         places = [self._places[name] for name in names]
+        scan = row.text("scan")
+        strange = [name for name, place in zip(names, places, strict=True) if place.scan != scan]
+        if strange:
+            raise row.wrong(
+                "scan", scan, f"the scan of viewpoint {strange[0]!r}, {self._places[strange[0]].scan!r}"
+            )
         yaws = [_yaw(row.number("heading"))]
         for here, there in pairwise(places):
             yaws.append(math.atan2(there.y_m - here.y_m, there.x_m - here.x_m))
         yaws.append(yaws[-1])
-        scan = row.text("scan")
         return PackPath(
             path_id=row.whole("path_id"),
             scan=scan,
@@ -238,10 +235,10 @@ def _near(row: Row) -> tuple[tuple[str, float | None, float | None, float | None
         label, heading, elevation, size, _, _, number = item
         if isinstance(number, bool) or not isinstance(number, int):
             raise row.wrong("objects", item, "objects with a whole number as their id")
-        for value in (heading, elevation, size):
-            if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
-                raise row.wrong("objects", item, "objects whose angles are numbers or null")
-        found.append((label, heading, elevation, size, number))
+        angles = [as_number(value) for value in (heading, elevation, size)]
+        if any(a is None and v is not None for a, v in zip(angles, (heading, elevation, size), strict=True)):
+            raise row.wrong("objects", item, "objects whose angles are finite numbers or null")
+        found.append((label, *angles, number))
     return tuple(found)
 
 
@@ -265,6 +262,9 @@ def _episode(row: Row, error_type: str, paths: dict[int, PackPath]) -> ErrorEpis
     path = paths.get(row.whole("path_id"))
     if path is None:
         raise row.wrong("path_id", row.whole("path_id"), "a path of the same split")
+    for name, wanted in (("scan", path.scan), ("type", error_type)):
+        if row.text(name) != wanted:
+            raise row.wrong(name, row.text(name), f"{wanted!r}, as its path and file have it")
     tokens = tuple(row.texts("tokens"))
     wrong = []
     for error in row.rows("errors"):
@@ -274,12 +274,14 @@ def _episode(row: Row, error_type: str, paths: dict[int, PackPath]) -> ErrorEpis
         if not 0 <= start < start + length <= len(tokens):
             raise error.wrong("pos", start, f"inside the {len(tokens)} tokens")
         # For directions the pack names the pair in `frm` and `to`; the words say which is which.
-        names = ("orig", "new") if kind == "direction" else ("frm", "to")
-        wrong.append(
-            WrongSpan(
-                start=start, length=length, kind=kind, right=error.text(names[0]), wrong=error.text(names[1])
-            )
-        )
+        names = ("orig", "new") if kind == DIRECTION else ("frm", "to")
+        right, put_in = (error.text(name) for name in names)
+        for name, word in zip(names, (right, put_in), strict=True):
+            if kind == DIRECTION and word not in OPPOSITES:
+                raise error.wrong(name, word, f"a direction: {', '.join(OPPOSITES)}")
+        wrong.append(WrongSpan(start=start, length=length, kind=kind, right=right, wrong=put_in))
+    if row.whole("label") != int(bool(wrong)):
+        raise row.wrong("label", row.whole("label"), f"{int(bool(wrong))}, for it has {len(wrong)} errors")
     return ErrorEpisode(
         key=row.text("id"),
         group=path.scan,

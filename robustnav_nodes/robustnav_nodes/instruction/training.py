@@ -4,6 +4,7 @@ What is done is kept beside the file to write, so that a training that was stopp
 ours in NAME.mentions.npz, IEDL epoch by epoch in NAME.iedl.
 """
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -46,32 +47,47 @@ def train_models(
     """
     if not instructions:
         raise BadParameterError("there is no instruction to learn from")
+    digest = digest_of(instructions, common_sense)
     kept, checkpoint = out.with_name(f"{out.stem}.mentions.npz"), out.with_name(f"{out.stem}.iedl")
     if not resume:
         kept.unlink(missing_ok=True)
         checkpoint.unlink(missing_ok=True)
     if kept.exists():
-        model = _taken_up(kept, plan, len(instructions))
+        model = _taken_up(kept, plan, digest)
         say(f"took up {kept}")
     else:
         model = train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
-        model = replace(model, card={**model.card, "data": plan.data})
+        model = replace(model, card={**model.card, "data": plan.data, "digest": digest})
         save_model(kept, model)
     curve: list[EpochFigures] = []
     if plan.iedl is not None:
-        model, curve = _with_iedl(model, instructions, common_sense, plan.iedl, plan.seed, checkpoint, say)
+        model, curve = _with_iedl(model, instructions, common_sense, plan.iedl, checkpoint, say)
     save_model(out, model)
     kept.unlink(missing_ok=True)
     checkpoint.unlink(missing_ok=True)
     return model, curve
 
 
-def _taken_up(kept: Path, plan: TrainingPlan, instructions: int) -> LearnedModel:
+def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense) -> str:
+    """SHA-256 of all that is learned from: words, walks, and what may be confused."""
+    found = hashlib.sha256()
+    walks: dict[int, bytes] = {}
+    for one in instructions:
+        key = id(one.trajectory)
+        if key not in walks:
+            walks[key] = hashlib.sha256(repr(one.trajectory).encode()).digest()
+        found.update(repr((one.key, one.group, one.tokens)).encode() + walks[key])
+    for likely in (common_sense.rooms, common_sense.objects):
+        found.update(repr(sorted((name, tuple(others)) for name, others in likely.items())).encode())
+    return found.hexdigest()
+
+
+def _taken_up(kept: Path, plan: TrainingPlan, digest: str) -> LearnedModel:
     model = load_model(kept)
     wanted = {
         "data": plan.data,
         "seed": plan.seed,
-        "instructions": instructions,
+        "digest": digest,
         "trees": asdict(plan.trees),
     }
     for name, value in wanted.items():
@@ -88,7 +104,6 @@ def _with_iedl(
     instructions: Sequence[Instruction],
     common_sense: CommonSense,
     settings: "IedlSettings",
-    seed: int,
     checkpoint: Path,
     say: Say,
 ) -> "tuple[LearnedModel, list[EpochFigures]]":
@@ -96,6 +111,7 @@ def _with_iedl(
     from robustnav_nodes.instruction.iedl_training import IedlTraining
     from robustnav_nodes.instruction.panorama import SemanticEncoder
 
+    seed: int = model.card["seed"]
     fold_of = fold_of_groups([one.group for one in instructions], folds=1, seed=seed)
     training = IedlTraining(
         [one for one in instructions if fold_of[one.group] != 0],
@@ -104,6 +120,7 @@ def _with_iedl(
         SemanticEncoder(),
         settings,
         seed=seed,
+        data=model.card["digest"],
         checkpoint=checkpoint,
     )
     arrays, shape = arrays_of_iedl(training.run(say))

@@ -96,30 +96,3 @@ class Trajectory:
 def wrapped(angle_rad: float) -> float:
     """The same angle in -pi..pi."""
     return math.remainder(angle_rad, 2.0 * math.pi)
-
-
-def mirrored(trajectory: Trajectory) -> Trajectory:
-    """The same walk in a home seen in a mirror: left and right change places, nothing else does."""
-    return Trajectory(
-        viewpoints=tuple(
-            Viewpoint(
-                x_m=at.x_m,
-                y_m=-at.y_m,
-                z_m=at.z_m,
-                yaw_in_rad=-at.yaw_in_rad,
-                yaw_out_rad=-at.yaw_out_rad,
-                rooms=at.rooms,
-                objects=tuple(
-                    SeenObject(
-                        name=seen.name,
-                        bearing_rad=None if seen.bearing_rad is None else -seen.bearing_rad,
-                        elevation_rad=seen.elevation_rad,
-                        size_sr=seen.size_sr,
-                        range_m=seen.range_m,
-                    )
-                    for seen in at.objects
-                ),
-            )
-            for at in trajectory.viewpoints
-        )
-    )

@@ -71,8 +71,6 @@ SAID: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 _ALWAYS_SEVERAL = frozenset({"flowers"})
 _IRREGULAR = {"shelf": "shelves", "bookshelf": "bookshelves", "bench": "benches", "dish": "dishes"}
-# Forms that hold a look already.
-_P_LOOK = 0.3
 
 
 def noun_of(thing: Thing, rng: np.random.Generator, *, plain: bool = False) -> str:
@@ -81,7 +79,7 @@ def noun_of(thing: Thing, rng: np.random.Generator, *, plain: bool = False) -> s
     return words[0] if plain else words[int(rng.integers(len(words)))]
 
 
-def named(thing: Thing, like: Sequence[Thing], rng: np.random.Generator, *, p_look: float = _P_LOOK) -> str:
+def named(thing: Thing, like: Sequence[Thing], rng: np.random.Generator, *, p_look: float) -> str:
     """The thing with its article; `like`: others of its name that are in sight too.
 
     Several near one another are mostly named together: "the chairs".

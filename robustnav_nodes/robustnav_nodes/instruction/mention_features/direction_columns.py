@@ -13,9 +13,9 @@ from robustnav_nodes.instruction.concepts import DIRECTION
 from robustnav_nodes.instruction.direction_phrases import TURN, phrase_of
 from robustnav_nodes.instruction.mention_features.columns import Columns, Told, Walked
 from robustnav_nodes.instruction.scene import OBJECT_INDEX
+from robustnav_nodes.instruction.side_model import SIDES
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES
 
-_SIGN = {"left": 1.0, "leftmost": 1.0, "right": -1.0, "rightmost": -1.0}
 _UP = {"up": 1.0, "down": -1.0}
 _TURNED_RAD = 0.6  # what counts as a turn that people mention
 _SOFT_RAD = 0.8
@@ -26,7 +26,7 @@ _PORCH = ROOM_TYPES.index("porch")
 
 def add_directions(columns: Columns, said: Told, walk: Walked, odds: Float64) -> None:
     """`odds` [M]: log odds of a replacement of every mention, for what stands beside a side."""
-    sign = np.array([_SIGN.get(m.concept, math.nan) for m in said.mentions])
+    sign = np.array([SIDES.get(m.concept, math.nan) for m in said.mentions])
     _add_turns(columns, walk, sign)
     _add_ordinal_turns(columns, said, walk, sign)
     _add_way_ahead(columns, walk, sign)
@@ -76,7 +76,7 @@ def _add_ordinal_turns(columns: Columns, said: Told, walk: Walked, sign: Float64
     turns = [
         m
         for m, mention in enumerate(said.mentions)
-        if mention.concept in _SIGN and phrase_of(said.tokens, mention) == TURN
+        if mention.concept in SIDES and phrase_of(said.tokens, mention) == TURN
     ]
     made = np.flatnonzero(np.abs(turn) > _TURNED_RAD)
     found = np.full((4, len(said)), np.nan)
@@ -96,11 +96,11 @@ def _add_ordinal_turns(columns: Columns, said: Told, walk: Walked, sign: Float64
 def _add_way_ahead(columns: Columns, walk: Walked, sign: Float64) -> None:
     """Where the way goes on, seen from each viewpoint on arriving."""
     scene = walk.scene
-    index, forward, left = np.arange(len(scene)), np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
+    index, cos, sin = np.arange(len(scene)), np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
     for steps in (1, 2, _TO_THE_END):
         there = scene.xyz_m[np.minimum(index + steps, walk.last), :2] - scene.xyz_m[:, :2]
-        aside = forward * there[:, 1] - left * there[:, 0]
-        ahead = forward * there[:, 0] + left * there[:, 1]
+        aside = cos * there[:, 1] - sin * there[:, 0]
+        ahead = cos * there[:, 0] + sin * there[:, 1]
         columns.add(f"aside_{steps}", sign * (walk.elsewhere @ aside))
         columns.add(f"ahead_{steps}", walk.elsewhere @ ahead)
         columns.add(f"aside_{steps}_by_text", sign * aside[walk.by_text])
@@ -182,7 +182,7 @@ def _linked_values(said: Told, walk: Walked, m: int, other: int) -> list[float]:
         float(weight @ rise),
     ]
     column = OBJECT_INDEX.get(said.mentions[other].concept)
-    sign = _SIGN.get(said.mentions[m].concept, math.nan)
+    sign = SIDES.get(said.mentions[m].concept, math.nan)
     unknown = [math.nan] * (len(_LINKED) - len(values))
     if column is None:
         return values + unknown

@@ -1,7 +1,5 @@
 """Where on the way a mention belongs, and how well it fits what was seen there."""
 
-import math
-
 import numpy as np
 
 from robustnav_msgs_py.values import Float64
@@ -16,9 +14,8 @@ from robustnav_nodes.instruction.concepts import (
 )
 from robustnav_nodes.instruction.mention_features.columns import Columns, Knowledge, Told, Walked
 from robustnav_nodes.instruction.mention_features.replacements import replacement_odds
-from robustnav_nodes.instruction.mentions import Mention
-from robustnav_nodes.instruction.place_model import DOWN, LEFT, RIGHT, UP
 from robustnav_nodes.instruction.scene import FAR_M
+from robustnav_nodes.instruction.side_model import SIDES
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES
 
 _LEAST = 1e-9
@@ -55,7 +52,7 @@ def add_evidence(columns: Columns, said: Told, walk: Walked, known: Knowledge) -
         columns.add(f"odds_{name}_best", odds[2])
         columns.add(f"odds_{name}_bare", bare)
         if name == "here":
-            answer = odds[0]
+            answer = odds[0].copy()
     flipped = _opposites(said, walk, known, here)
     sides = np.flatnonzero(~np.isnan(flipped)).tolist()
     opposite = [CONCEPT_NUMBER[DIRECTION, OPPOSITES[said.mentions[m].concept]] for m in sides]
@@ -89,13 +86,13 @@ def _add_own_evidence(columns: Columns, walk: Walked) -> Float64:
 def _opposites(said: Told, walk: Walked, known: Knowledge, here: Float64) -> Float64:
     """How much better the opposite of left, right, up or down fits; NaN for all other mentions."""
     flipped = np.full(len(said), np.nan)
-    for m, mention in enumerate(said.mentions):
-        if said.numbers[m] in (LEFT, RIGHT, UP, DOWN):
-            other = Mention(
-                start=mention.start, length=mention.length, kind=DIRECTION, concept=OPPOSITES[mention.concept]
-            )
-            opposite = known.places.of_mentions(walk.scene, said.tokens, [other], walk.at_places)[0]
-            flipped[m] = math.log(float(walk.elsewhere[m] @ np.exp(opposite)) + _LEAST) - here[m]
+    sides = np.array([m.concept in SIDES or m.concept in ("up", "down") for m in said.mentions], dtype=bool)
+    if sides.any():
+        other = known.places.of_mentions(
+            walk.scene, said.tokens, said.mentions, walk.at_places, opposite=True
+        )[sides]
+        weighed = (walk.elsewhere[sides] * np.exp(other)).sum(axis=1)
+        flipped[sides] = np.log(np.maximum(weighed, _LEAST)) - here[sides]
     return flipped
 
 

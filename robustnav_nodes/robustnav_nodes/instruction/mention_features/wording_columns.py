@@ -49,8 +49,8 @@ def add_wording(columns: Columns, said: Told, replacements: Replacements) -> Flo
     _add_places_in_text(columns, said)
     _add_other_mentions(columns, said)
     uniform: Float64 = odds[0]
-    columns.add("fit_before", np.roll(uniform, 1))
-    columns.add("fit_after", np.roll(uniform, -1))
+    columns.add("fit_before", np.concatenate([[np.nan], uniform[:-1]]) if len(said) else uniform)
+    columns.add("fit_after", np.concatenate([uniform[1:], [np.nan]]) if len(said) else uniform)
     columns.add("fit_worst_other", worst_other(uniform))
     return uniform
 

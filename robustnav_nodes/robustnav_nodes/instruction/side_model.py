@@ -1,0 +1,142 @@
+"""How well "left" or "right" fits a viewpoint: log P(what is there | said) / P(what is there).
+
+A small network tells viewpoints where a side was said from all others (density ratio by logistic regression).
+Everything is seen from the side that was said: a turn towards it is positive, so that left and right are one
+question and the mirror image of a walk is as good as the walk.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robustnav_msgs_py.values import Float64
+from robustnav_nodes.instruction.concepts import DIRECTION
+from robustnav_nodes.instruction.direction_phrases import PHRASES, phrase_of
+from robustnav_nodes.instruction.mentions import Mention
+from robustnav_nodes.instruction.scene import FAR_M, OBJECT_INDEX, Scene
+
+# +1 where the side is the left one.
+SIDES = {"left": 1.0, "leftmost": 1.0, "right": -1.0, "rightmost": -1.0}
+_SOFT_RAD, _SOFT_M, _FADE_M = 0.8, 2.0, 3.0
+_FAR_STEPS = 99
+_LINK_REACH = 5  # tokens between a side and the thing that stands there
+FEATURES = 28
+ODD = slice(0, 12)  # the columns of `side_features` that change their sign in the mirror
+_LIMIT = 4.0  # of the log evidence: nothing that is seen or missed decides alone
+_UNITS = 32
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SideModel:
+    """Weights of the network: `hidden` [FEATURES + 1, units], `out` [units + 1]."""
+
+    hidden: Float64
+    out: Float64
+
+    def log_ratio(self, features: Float64) -> Float64:
+        """float64 [n] of rows of `side_features`."""
+        units = np.maximum(features @ self.hidden[:-1] + self.hidden[-1], 0.0)
+        kept: Float64 = np.clip(units @ self.out[:-1] + self.out[-1], -_LIMIT, _LIMIT)
+        return kept
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkSides:
+    """A walk as sides see it: `odd` [T, .] changes its sign in the mirror, `even` [T, .] does not."""
+
+    odd: Float64
+    even: Float64
+
+
+def walk_sides(scene: Scene) -> WalkSides:
+    """What is turned around each viewpoint, and where the way goes on from it."""
+    count = len(scene)
+    index = np.arange(count)
+    turn = np.concatenate([[0.0, 0.0], scene.turn_rad, [0.0, 0.0]])
+    soft = np.tanh(turn / _SOFT_RAD)
+    around = np.stack([soft[2 + step : 2 + step + count] for step in (-2, -1, 0, 1, 2)], axis=1)
+    with_next = np.tanh((turn[2:-2] + turn[3:-1]) / _SOFT_RAD)
+    with_both = np.tanh((turn[1:-3] + turn[2:-2] + turn[3:-1]) / _SOFT_RAD)
+    odd = [around, with_next[:, None], with_both[:, None]]
+    even = [np.abs(around), index[:, None] == 0, index[:, None] == 1, index[:, None] >= count - 1]
+    cos, sin = np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
+    for steps in (1, 2, _FAR_STEPS):
+        way = scene.xyz_m[np.minimum(index + steps, count - 1), :2] - scene.xyz_m[:, :2]
+        odd.append(np.tanh((cos * way[:, 1] - sin * way[:, 0]) / _SOFT_M)[:, None])
+        even.append(np.tanh((cos * way[:, 0] + sin * way[:, 1]) / _SOFT_M)[:, None])
+    return WalkSides(odd=np.hstack(odd), even=np.hstack(even).astype(float))
+
+
+def side_features(
+    walk: WalkSides, scene: Scene, tokens: Sequence[str], mentions: Sequence[Mention], m: int, sign: float
+) -> Float64:
+    """float64 [T, FEATURES] of mention `m` as if it said the left (`sign` 1) or the right (-1)."""
+    count = len(scene)
+    phrase = np.zeros((count, PHRASES))
+    phrase[:, phrase_of(tokens, mentions[m])] = 1.0
+    linked = np.zeros((count, 3))
+    column = _linked_object(mentions, m)
+    if column is not None:
+        ranges, bearing = scene.range_m[:, column], scene.bearing_rad[:, column]
+        near = np.where(np.isnan(bearing) | (ranges >= FAR_M), 0.0, np.exp(-ranges / _FADE_M))
+        aside = np.nan_to_num(bearing)
+        linked[:, 0] = sign * near * np.sin(aside)
+        linked[:, 1] = sign * near * np.sin(aside - scene.turn_rad)
+        linked[:, 2] = near
+    return np.hstack([sign * walk.odd, linked[:, :2], walk.even, phrase, linked[:, 2:]])
+
+
+def _linked_object(mentions: Sequence[Mention], m: int) -> int | None:
+    """The column of the object that is named right before or after a side."""
+    side = mentions[m]
+    found: tuple[int, int] | None = None
+    for other in mentions[max(0, m - 1) : m + 2]:
+        if other.kind == DIRECTION or other.concept not in OBJECT_INDEX:
+            continue
+        first, second = sorted((side, other), key=lambda one: one.start)
+        gap = second.start - first.start - first.length
+        if gap <= _LINK_REACH and (found is None or gap < found[0]):
+            found = gap, OBJECT_INDEX[other.concept]
+    return None if found is None else found[1]
+
+
+def mirrored(rows: Float64) -> Float64:
+    """Rows of `side_features` as if the other side had been said."""
+    other = rows.copy()
+    other[:, ODD] *= -1.0
+    return other
+
+
+def learn_sides(rows: Sequence[Float64], placed: Sequence[Float64], *, seed: int, epochs: int) -> SideModel:
+    """Learn from the `rows` [T, FEATURES] of every side that was said, and where it was `placed` [T].
+
+    They are told from both sides at all viewpoints of the same walks, all of which count alike. Where no side
+    was said, nothing is known of them.
+    """
+    if not rows:
+        return SideModel(hidden=np.zeros((FEATURES + 1, _UNITS)), out=np.zeros(_UNITS + 1))
+    import torch
+
+    from robustnav_nodes.instruction.small_network import teach
+
+    torch.manual_seed(seed)
+    network = torch.nn.Sequential(
+        torch.nn.Linear(FEATURES, _UNITS), torch.nn.ReLU(), torch.nn.Linear(_UNITS, 1)
+    )
+    said = np.concatenate(rows)
+    anywhere = np.concatenate([np.full(len(own), 0.5 / len(own)) for own in rows])
+    x = torch.from_numpy(np.concatenate([said, said, mirrored(said)]).astype(np.float32))
+    weight = torch.from_numpy(np.concatenate([*placed, anywhere, anywhere]).astype(np.float32))
+    is_said = torch.zeros(len(x))
+    is_said[: len(said)] = 1.0
+
+    def loss_of(some: torch.Tensor) -> torch.Tensor:
+        each = torch.nn.functional.binary_cross_entropy_with_logits(
+            network(x[some])[:, 0], is_said[some], reduction="none"
+        )
+        return (weight[some] * each).sum() / weight[some].sum().clamp(min=1e-9)
+
+    teach(network, loss_of, len(x), rate=5e-3, decay=0.01, batch=2048, epochs=epochs, seed=seed)
+    first, first_bias, last, last_bias = (p.detach().double().numpy() for p in network.parameters())
+    return SideModel(hidden=np.vstack([first.T, first_bias]), out=np.concatenate([last[0], last_bias]))

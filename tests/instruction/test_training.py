@@ -1,0 +1,88 @@
+"""The whole training: taken up it ends as if it had not been stopped, and what is too little is said."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from robustnav_msgs_py.errors import BadFileError, BadParameterError
+from robustnav_nodes.cli import app
+from robustnav_nodes.instruction.common_sense import anything_goes
+from robustnav_nodes.instruction.episodes import Instruction
+from robustnav_nodes.instruction.tokens import tokenized
+from tests.instruction.small_world import said_walks
+
+pytest.importorskip("torch")
+pytest.importorskip("sklearn")
+
+from robustnav_nodes.instruction.iedl_training import IedlSettings
+from robustnav_nodes.instruction.mention_training import TreeSettings
+from robustnav_nodes.instruction.model_file import load_model
+from robustnav_nodes.instruction.training import TrainingPlan, digest_of, train_models
+
+SAID = said_walks(homes=3, walks=2, seed=0)
+PLAN = TrainingPlan(
+    data="small world",
+    trees=TreeSettings(iterations=5, least_in_leaf=5, ensembles=1, folds=2),
+    iedl=IedlSettings(width=16, layers=1, batch=16, epochs=3),
+)
+
+
+def train(out: Path, said: list[Instruction] = SAID, *, stop_at: str = "never", resume: bool = False) -> None:
+    def say(told: str) -> None:
+        if stop_at in told:
+            raise KeyboardInterrupt
+
+    train_models(said, anything_goes(), PLAN, out, resume=resume, say=say)
+
+
+def arrays(path: Path) -> dict[str, Any]:
+    with np.load(path) as file:
+        return {name: file[name] for name in file.files}
+
+
+def test_a_training_that_was_interrupted_is_taken_up(tmp_path: Path) -> None:
+    """While IEDL learns: ours is kept whole, IEDL goes on after its last epoch; other data are refused."""
+    train(tmp_path / "whole.npz")
+    parts = tmp_path / "parts.npz"
+    with pytest.raises(KeyboardInterrupt):
+        train(parts, stop_at="IEDL, epoch 1")
+    assert not parts.exists()
+    turned = replace(SAID[0], trajectory=replace(SAID[0].trajectory, viewpoints=()))
+    with pytest.raises(BadFileError, match="was trained with digest"):
+        train(parts, [turned, *SAID[1:]], resume=True)
+    train(parts, resume=True)
+    whole, again = arrays(tmp_path / "whole.npz"), arrays(parts)
+    assert set(whole) == set(again)
+    for name, array in whole.items():
+        np.testing.assert_array_equal(again[name], array, err_msg=name)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["parts.npz", "whole.npz"]
+
+
+def test_the_digest_is_of_all_that_is_learned_from() -> None:
+    likely = anything_goes()
+    own = digest_of(SAID, likely)
+    assert own == digest_of(said_walks(homes=3, walks=2, seed=0), likely)
+    assert own != digest_of([replace(SAID[0], tokens=SAID[0].tokens[1:]), *SAID[1:]], likely)
+    assert own != digest_of(SAID, replace(likely, rooms={}))
+
+
+def test_words_of_which_none_can_be_wrong_are_too_few(tmp_path: Path) -> None:
+    dull = [replace(one, tokens=tokenized("go on and on " * 5)) for one in SAID]
+    with pytest.raises(BadParameterError, match="too few to learn from"):
+        train(tmp_path / "m.npz", dull)
+
+
+@pytest.mark.slow
+def test_the_command_makes_homes_and_learns_in_them(tmp_path: Path) -> None:
+    out = tmp_path / "model.npz"
+    arguments = ["--homes", "2", "--width", "16", "--epochs", "1", "--out", str(out)]
+    done = CliRunner().invoke(app, ["train", "iedl", *arguments])
+    assert done.exit_code == 0, done.output
+    assert "made 2 of 2 homes" in done.output
+    assert (tmp_path / "model.curve.json").exists()
+    card = load_model(out).card
+    assert (card["homes"], card["iedl"]["epochs_trained"]) == (2, 1)
