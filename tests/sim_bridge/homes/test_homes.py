@@ -22,8 +22,8 @@ from sim_bridge.homes.scene import Scene
 from sim_bridge.homes.scene_files.scene_file import parse_scene, scene_text
 from sim_bridge.homes.shapes import extent
 
-# 60 homes, and where there is time, 200 of each difficulty.
-SEEDS = {Difficulty.EASY: 30, Difficulty.MEDIUM: 20, Difficulty.HARD: 10}
+# 66 homes, and where there is time, 200 of each difficulty.
+SEEDS = {Difficulty.EASY: 24, Difficulty.MEDIUM: 20, Difficulty.HARD: 22}
 MORE_SEEDS = dict.fromkeys(Difficulty, 200)
 ROOMS = {Difficulty.EASY: {1}, Difficulty.MEDIUM: {3, 4}, Difficulty.HARD: set(range(6, 11))}
 PLANNERS_RADIUS_M = 0.18
@@ -37,7 +37,7 @@ Sample = tuple[Difficulty, Scene, Home]
 
 
 @pytest.fixture(
-    scope="module", params=[SEEDS, pytest.param(MORE_SEEDS, marks=pytest.mark.slow)], ids=["60", "600"]
+    scope="module", params=[SEEDS, pytest.param(MORE_SEEDS, marks=pytest.mark.slow)], ids=["66", "600"]
 )
 def samples(request: pytest.FixtureRequest) -> list[Sample]:
     found = []
