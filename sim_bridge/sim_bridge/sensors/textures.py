@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
+from sim_bridge.sensors.finishes import finish_table
 from sim_bridge.sensors.hulls import GLOBE, MANTLE
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
 from sim_bridge.sensors.scenery import PATTERN_CODE, SUBSTANCE_CODE, Mesh
@@ -50,19 +51,10 @@ AMBIENT, LAMP, FILL = 0.46, 0.50, 0.16
 LAMP_REACH_M = 5.0
 FILL_DIRECTION = (0.48, 0.64, 0.60)
 WARM_RGB = (1.03, 1.0, 0.94)
-# How bright the highlight of the lamp is on what shines.
-_GLOSS = {
-    Substance.METAL: 0.45,
-    Substance.GLASS: 0.35,
-    Substance.CERAMIC: 0.35,
-    Substance.PLASTIC: 0.14,
-    Substance.LEATHER: 0.14,
-    Substance.TILES: 0.07,
-    Substance.STONE: 0.07,
-    Substance.BOARDS: 0.07,
-}
-GLOSS: Float64 = np.array([_GLOSS.get(substance, 0.0) for substance in Substance])
-SHARPNESS = 5  # a highlight is the cosine to the power of 2 ** SHARPNESS
+# What shines mirrors a room like any other: dark floor, light walls, bright ceiling, windows on two sides.
+FLOOR, HORIZON, CEILING, WINDOW = 0.20, 0.50, 1.05, 0.80
+WINDOW_SHARPNESS = 4  # a window's brightness is the cosine to the power of 2 ** WINDOW_SHARPNESS
+FINISH: Float64 = finish_table()
 # At a grazing angle a pixel covers a longer piece of the surface, but never longer than this many times.
 LONGEST_FOOTPRINT = 8.0
 
@@ -154,8 +146,8 @@ def _wood(s: float, t: float, footprint_m: float) -> float:
     return (
         1.0
         + 0.05 * wander
-        - 0.20 * (ring - 0.25) * _share(RING_M, footprint_m)
-        + 0.14 * streak * _share(4.0 * STREAK_M, footprint_m)
+        - 0.28 * (ring - 0.25) * _share(RING_M, footprint_m)
+        + 0.17 * streak * _share(4.0 * STREAK_M, footprint_m)
     )
 
 
@@ -189,7 +181,7 @@ def _grain(substance: int, s: float, t: float, footprint_m: float) -> float:
         return 1.0 + 0.13 * tuft + 0.03 * _smooth(s * 160.0, t * 160.0)
     if substance == LEATHER:
         pore = _smooth(s * 8.0 / PORE_M, t * 8.0 / PORE_M)
-        return 1.0 - 0.20 * max(0.0, pore) * _share(PORE_M, footprint_m) + 0.05 * _smooth(s * 50.0, t * 50.0)
+        return 1.0 - 0.20 * max(0.0, pore) * _share(PORE_M, footprint_m) + 0.10 * _smooth(s * 50.0, t * 50.0)
     if substance == METAL:
         brushed = _smooth(s * 12.0, t * 700.0) * _share(0.02, footprint_m)
         return 1.0 + 0.07 * brushed + 0.03 * _smooth(s * 8.0, t * 60.0)
@@ -253,6 +245,16 @@ def albedo(
 
 
 @compiled_loosely
+def _surroundings(up: float, aside: float) -> float:
+    """How bright a room is in a direction, given its cosines to straight up and to where a window is."""
+    sky = HORIZON + up * (CEILING - HORIZON if up > 0.0 else HORIZON - FLOOR)
+    window = aside
+    for _ in range(WINDOW_SHARPNESS):
+        window *= window
+    return sky + WINDOW * window
+
+
+@compiled_loosely
 def _angle(x: float, y: float) -> float:
     """The angle of (x, y) to within 0.005 rad, which is finer than anything drawn with it."""
     a, b = abs(x), abs(y)
@@ -277,7 +279,8 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
     lamp = (0.0, 0.0, 0.0)
     fill = (0.0, 0.0, 0.0)
     face, substance, pattern, longest, axis = 0, 0, 0, 0, 0
-    shift, shininess, period_m = 0.0, 0.0, 1.0
+    shift, period_m = 0.0, 1.0
+    gloss, sharpness, mirror, tint, through = 0.0, 0, 0.0, 0.0, 0.0
     centre = (0.0, 0.0, 0.0)
     colours = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     nx, ny, nz = 0.0, 0.0, 0.0
@@ -304,7 +307,8 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                     part_before = part
                     substance, pattern, longest, axis, variant = mesh.part_look[part]
                     shift = variant * 0.173
-                    shininess = GLOSS[substance]
+                    gloss, sharpness = FINISH[substance, 0], int(FINISH[substance, 1])
+                    mirror, tint, through = FINISH[substance, 2], FINISH[substance, 3], FINISH[substance, 4]
                     c = mesh.part_colour[part]
                     colours = (c[0], c[1], c[2], c[3], c[4], c[5])
                     frame = mesh.part_frame[part]
@@ -370,9 +374,11 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                 period_m,
                 depth_m / view.fx * stretch,
             )
-            if substance == LIGHT:
-                light, shine = 1.0, 0.0
-            else:
+            red += (FINISH[substance, 5] - red) * through
+            green += (FINISH[substance, 6] - green) * through
+            blue += (FINISH[substance, 7] - blue) * through
+            light, shine, mirrored = 1.0, 0.0, 0.0
+            if substance != LIGHT:
                 lx, ly, lz = lamp[0] - px, lamp[1] - py, lamp[2] - pz
                 square = lx * lx + ly * ly + lz * lz
                 near = 1.0 / math.sqrt(square)
@@ -381,14 +387,27 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                 lit = lit * (0.6 + 0.4 * lit) * 1.15 / (1.0 + square / (LAMP_REACH_M * LAMP_REACH_M))
                 aside = 0.5 + 0.5 * (nx * fill[0] + ny * fill[1] + nz * fill[2])
                 light = (AMBIENT + LAMP * lit + FILL * aside) * shares[v, u]
-                shine = 0.0
-                if shininess > 0.0:
+                if gloss > 0.0:
                     hx, hy, hz = lx * near + ex * away, ly * near + ey * away, lz * near + ez * away
                     gleam = (nx * hx + ny * hy + nz * hz) / math.sqrt(hx * hx + hy * hy + hz * hz)
                     gleam = max(0.0, gleam)
-                    for _ in range(SHARPNESS):
+                    for _ in range(sharpness):
                         gleam *= gleam
-                    shine = shininess * gleam
+                    shine = gloss * gleam
+                if mirror > 0.0:
+                    rest = (1.0 - facing) * (1.0 - facing)
+                    share = mirror + (1.0 - mirror) * rest * rest * (1.0 - facing)
+                    rx, ry, rz = (
+                        2.0 * facing * nx - ex * away,
+                        2.0 * facing * ny - ey * away,
+                        2.0 * facing * nz - ez * away,
+                    )
+                    aside = (rx * fill[0] + ry * fill[1]) / math.sqrt(fill[0] * fill[0] + fill[1] * fill[1])
+                    mirrored = share * shares[v, u] * _surroundings(rz, aside)
+                    light *= 1.0 - share
+            # A metal mirrors in its own colour, all else as it is.
+            light += tint * mirrored
+            shine += (1.0 - tint) * mirrored
             picture[v, u, 0] = np.uint8(min(255.0, 255.0 * (red * light * WARM_RGB[0] + shine)))
             picture[v, u, 1] = np.uint8(min(255.0, 255.0 * (green * light * WARM_RGB[1] + shine)))
             picture[v, u, 2] = np.uint8(min(255.0, 255.0 * (blue * light * WARM_RGB[2] + shine)))
