@@ -15,8 +15,8 @@ class Finish:
     gloss: how bright the highlight of the lamp is; sharpness: it is the cosine to the power of 2 ** this.
     mirror: the share of light from the surroundings that it throws back when seen from straight ahead
     (towards the rim it is more: Schlick's approximation of Fresnel's law); tinted: it colours what it
-    mirrors, as metals do. through: the share of its colour that it owes to what is beneath (glass) or to
-    what it is itself under its stain (wood): `beneath_rgb`, in 0..1.
+    mirrors, as metals do. through: the share of its colour that it owes to what is behind it (glass), or to
+    what it is under its stain, dye or print (wood, leather, paper): `beneath_rgb`, in 0..1.
     """
 
     gloss: float = 0.0
@@ -36,7 +36,8 @@ FINISHES = {
     Substance.CERAMIC: Finish(gloss=0.50, sharpness=6, mirror=0.04),
     Substance.WOOD: Finish(through=0.25, beneath_rgb=(0.60, 0.42, 0.25)),
     Substance.PLASTIC: Finish(gloss=0.20, sharpness=3),
-    Substance.LEATHER: Finish(gloss=0.22, sharpness=4),
+    Substance.LEATHER: Finish(gloss=0.22, sharpness=4, through=0.25, beneath_rgb=(0.26, 0.15, 0.09)),
+    Substance.PAPER: Finish(through=0.20, beneath_rgb=(0.94, 0.92, 0.87)),
     Substance.TILES: Finish(gloss=0.07),
     Substance.STONE: Finish(gloss=0.07),
     Substance.BOARDS: Finish(gloss=0.07),
