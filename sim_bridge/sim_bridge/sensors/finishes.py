@@ -2,9 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from robustnav_msgs_py.values import Float64
 from sim_bridge.homes.materials import Colour, Substance
 
 
@@ -44,20 +41,14 @@ FINISHES = {
 }
 
 
-def finish_table() -> Float64:
-    """A row for each substance: gloss, sharpness, mirror, tinted, through; beneath: red, green, blue."""
-    finishes = [FINISHES.get(substance, MATT) for substance in Substance]
-    return np.array(
-        [
-            (
-                finish.gloss,
-                finish.sharpness,
-                finish.mirror,
-                finish.tinted,
-                finish.through,
-                *finish.beneath_rgb,
-            )
-            for finish in finishes
-        ],
-        dtype=np.float64,
+def finish_of(substance: Substance) -> Finish:
+    """Its finish: matt where no other is known."""
+    return FINISHES.get(substance, MATT)
+
+
+def shown_rgb(rgb: Colour, finish: Finish) -> Colour:
+    """The colour of a surface that is stained, dyed or printed in `rgb` (0..1)."""
+    red, green, blue = (
+        own + (beneath - own) * finish.through for own, beneath in zip(rgb, finish.beneath_rgb, strict=True)
     )
+    return red, green, blue

@@ -18,6 +18,7 @@ from sim_bridge.homes.home import WALL_THICKNESS_M, Home, Room, Wall, Window
 from sim_bridge.homes.materials import COLOURS, Colour, Material, Pattern, Substance
 from sim_bridge.homes.rect import Rect, Side
 from sim_bridge.homes.shapes import Part, Shape, Vector3, box, extent
+from sim_bridge.sensors.finishes import finish_of, shown_rgb
 from sim_bridge.sensors.hulls import BOTTOM, EAST, NORTH, SOUTH, WEST, Int32, hull_of
 
 FLOOR_THICKNESS_M = 0.05
@@ -83,6 +84,7 @@ class Mesh(NamedTuple):
     part_half_m: Float64  # [parts, 3]: its half extents
     part_look: Int32  # [parts, 5]: substance, pattern, longest axis, axis of a cylinder, variant 0..255
     part_colour: Float64  # [parts, 6]: red, green, blue, and those of the pattern
+    part_finish: Float64  # [parts, 4]: gloss, sharpness, mirror, tinted (0 or 1), as Finish says
     part_frame: Float64  # [parts, 4]: its centre, and the period of its pattern
     item_vertices: Int32  # [items + 1]
     item_triangles: Int32  # [items + 1]
@@ -231,7 +233,7 @@ def _gap_m(first: Rect, second: Rect) -> float:
 
 def _mesh(items: tuple[Item, ...]) -> Mesh:
     vertices, triangles, firsts, faces = [], [], [], []
-    part_item, part_triangles, looks, colours, frames = [], [], [], [], []
+    part_item, part_triangles, looks, colours, finishes, frames = [], [], [], [], [], []
     shapes, halves = [], []
     item_vertices, item_triangles = [0], [0]
     for row, item in enumerate(items):
@@ -239,20 +241,23 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
         for at, part in enumerate(item.parts):
             hull = hull_of(part)
             seen = ~np.isin(hull.faces, item.unseen) if item.unseen else slice(None)
-            own = hull.triangles[seen]
+            corners = hull.triangles[seen]
             half = np.array(part.size_m) / 2.0
             vertices.append(hull.vertices * half + part.centre_m)
-            triangles.append(own + count)
+            triangles.append(corners + count)
             faces.append(hull.faces[seen])
             part_item.append(row)
             shapes.append(SHAPE_CODE[part.shape])
             halves.append(half)
-            part_triangles.append(len(own))
+            part_triangles.append(len(corners))
             looks.append(_look(part, at + 7 * row))
-            colours.append((*part.material.rgb, *second_colour(part.material)))
+            finish = finish_of(part.material.substance)
+            own, second = part.material.rgb, second_colour(part.material)
+            colours.append((*shown_rgb(own, finish), *shown_rgb(second, finish)))
+            finishes.append((finish.gloss, finish.sharpness, finish.mirror, finish.tinted))
             frames.append((*part.centre_m, max(SHORTEST_PERIOD_M, max(part.size_m) / PERIODS)))
             count += len(hull.vertices)
-            triangle_count += len(own)
+            triangle_count += len(corners)
         firsts.append(np.full(triangle_count, item_vertices[-1]))
         item_vertices.append(item_vertices[-1] + count)
         item_triangles.append(item_triangles[-1] + triangle_count)
@@ -271,6 +276,7 @@ def _mesh(items: tuple[Item, ...]) -> Mesh:
         part_half_m=np.array(halves, dtype=np.float64).reshape(-1, 3),
         part_look=np.array(looks, dtype=np.int32).reshape(-1, 5),
         part_colour=np.array(colours, dtype=np.float64).reshape(-1, 6),
+        part_finish=np.array(finishes, dtype=np.float64).reshape(-1, 4),
         part_frame=np.array(frames, dtype=np.float64).reshape(-1, 4),
         item_vertices=np.array(item_vertices, dtype=np.int32),
         item_triangles=np.array(item_triangles, dtype=np.int32),

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32, Float64
 from sim_bridge.homes.materials import Pattern, Substance
 from sim_bridge.sensors.compiled import compiled_loosely
-from sim_bridge.sensors.finishes import finish_table
 from sim_bridge.sensors.hulls import GLOBE, MANTLE
 from sim_bridge.sensors.rasterizer import NOTHING, Samples, View
 from sim_bridge.sensors.scenery import PATTERN_CODE, SUBSTANCE_CODE, Mesh
@@ -54,7 +53,6 @@ WARM_RGB = (1.03, 1.0, 0.94)
 # What shines mirrors a room like any other: dark floor, light walls, bright ceiling, windows on two sides.
 FLOOR, HORIZON, CEILING, WINDOW = 0.20, 0.50, 1.05, 0.80
 WINDOW_SHARPNESS = 4  # a window's brightness is the cosine to the power of 2 ** WINDOW_SHARPNESS
-FINISH: Float64 = finish_table()
 # At a grazing angle a pixel covers a longer piece of the surface, but never longer than this many times.
 LONGEST_FOOTPRINT = 8.0
 
@@ -280,7 +278,7 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
     fill = (0.0, 0.0, 0.0)
     face, substance, pattern, longest, axis = 0, 0, 0, 0, 0
     shift, period_m = 0.0, 1.0
-    gloss, sharpness, mirror, tint, through = 0.0, 0, 0.0, 0.0, 0.0
+    gloss, sharpness, mirror, tint = 0.0, 0, 0.0, 0.0
     centre = (0.0, 0.0, 0.0)
     colours = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     nx, ny, nz = 0.0, 0.0, 0.0
@@ -307,8 +305,8 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                     part_before = part
                     substance, pattern, longest, axis, variant = mesh.part_look[part]
                     shift = variant * 0.173
-                    gloss, sharpness = FINISH[substance, 0], int(FINISH[substance, 1])
-                    mirror, tint, through = FINISH[substance, 2], FINISH[substance, 3], FINISH[substance, 4]
+                    finish = mesh.part_finish[part]
+                    gloss, sharpness, mirror, tint = finish[0], int(finish[1]), finish[2], finish[3]
                     c = mesh.part_colour[part]
                     colours = (c[0], c[1], c[2], c[3], c[4], c[5])
                     frame = mesh.part_frame[part]
@@ -374,9 +372,6 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                 period_m,
                 depth_m / view.fx * stretch,
             )
-            red += (FINISH[substance, 5] - red) * through
-            green += (FINISH[substance, 6] - green) * through
-            blue += (FINISH[substance, 7] - blue) * through
             light, shine, mirrored = 1.0, 0.0, 0.0
             if substance != LIGHT:
                 lx, ly, lz = lamp[0] - px, lamp[1] - py, lamp[2] - pz
