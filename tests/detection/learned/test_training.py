@@ -1,7 +1,7 @@
 """Training lowers the loss, goes on where it stopped, and its processes add up to one larger batch."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +51,7 @@ class LineLoss:
         return loss
 
 
-def phase(folder: Path, budget_s: float) -> Phase:
+def phase(folder: Path, budget_s: float, purpose: str = "a line") -> Phase:
     torch.manual_seed(0)
     return Phase(
         torch.nn.Linear(1, 1),
@@ -60,6 +60,7 @@ def phase(folder: Path, budget_s: float) -> Phase:
         seed=3,
         budget_s=budget_s,
         checkpoint=folder / "line.checkpoint",
+        purpose=purpose,
         clock=Ticks(),
     )
 
@@ -103,6 +104,19 @@ def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
     (tmp_path / "line.checkpoint").write_bytes(b"no checkpoint")
     with pytest.raises(BadFileError, match="remove it to begin anew"):
         phase(tmp_path, 100.0)
+
+
+def test_a_checkpoint_of_another_training_is_refused(tmp_path: Path) -> None:
+    phase(tmp_path, 3.0).run()
+    with pytest.raises(BadFileError, match="of another training .a line; asked for is a curve"):
+        phase(tmp_path, 3.0, "a curve")
+
+
+def test_a_training_may_be_given_more_minutes_but_not_another_seed(untrained: Weights) -> None:
+    plan = TrainingPlan(minutes=1.0, seed=1, begin_with=untrained)
+    assert str(plan) == str(replace(plan, minutes=2.0))
+    assert str(plan) != str(replace(plan, seed=2))
+    assert str(plan) != str(replace(plan, begin_with=None))
 
 
 def test_an_earlier_training_is_not_overwritten_unasked(tmp_path: Path) -> None:

@@ -51,10 +51,14 @@ class Phase:
         seed: int,
         budget_s: float,
         checkpoint: Path,
+        purpose: str,
         peak_rate: float = PEAK_RATE,
         clock: Clock = time.monotonic,
     ) -> None:
-        """Take up `checkpoint` where there is one. Raises BadFileError where it cannot be read."""
+        """Take up `checkpoint` where there is one.
+
+        Raises BadFileError where it cannot be read, and where it was made for another `purpose`.
+        """
         self.network = network
         self.average = copy.deepcopy(network)
         self.curve: list[CurvePoint] = []
@@ -65,6 +69,7 @@ class Phase:
         self._seed = seed
         self._budget_s = budget_s
         self._checkpoint = checkpoint
+        self._purpose = purpose
         self._peak_rate = peak_rate
         self._clock = clock
         self._optimizer = torch.optim.AdamW(network.parameters(), lr=peak_rate, weight_decay=WEIGHT_DECAY)
@@ -124,6 +129,7 @@ class Phase:
 
     def _save(self) -> None:
         state = {
+            "purpose": self._purpose,
             "network": self.network.state_dict(),
             "average": self.average.state_dict(),
             "optimizer": self._optimizer.state_dict(),
@@ -138,6 +144,7 @@ class Phase:
     def _take_up(self) -> None:
         try:
             state = torch.load(self._checkpoint, weights_only=True)
+            purpose = str(state["purpose"])
             self.network.load_state_dict(state["network"])
             self.average.load_state_dict(state["average"])
             self._optimizer.load_state_dict(state["optimizer"])
@@ -150,6 +157,11 @@ class Phase:
                 f"the checkpoint {str(self._checkpoint)!r} cannot be taken up ({error}); "
                 "remove it to begin anew"
             ) from error
+        if purpose != self._purpose:
+            raise BadFileError(
+                f"the checkpoint {str(self._checkpoint)!r} is of another training ({purpose}; asked for is "
+                f"{self._purpose}); take it up with the same options, or remove it to begin anew"
+            )
 
 
 def _is_half_precision_faster(workers: GradientWorkers, clock: Clock) -> bool:

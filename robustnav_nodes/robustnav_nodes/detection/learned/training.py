@@ -16,7 +16,7 @@ from robustnav_nodes.detection.learned.lessons import DetectionLoss, LookLoss
 from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwork, Widths
 from robustnav_nodes.detection.learned.phase import PEAK_RATE, Clock, CurvePoint, Phase
 from robustnav_nodes.detection.learned.rendering import Kind, RenderPlan, render_pictures
-from robustnav_nodes.detection.learned.weights import Weights, save_weights
+from robustnav_nodes.detection.learned.weights import Weights, digest_of, save_weights
 
 # The seeds below this one are for demos and tests; those from TEST_SEED on are never trained on.
 FIRST_SEED, TEST_SEED = 1000, 500_000
@@ -47,6 +47,12 @@ class TrainingPlan:
     networks: tuple[str, ...] = NETWORKS
     begin_with: Weights | None = None
     rate: float = 1.0
+
+    def __str__(self) -> str:
+        """All but the minutes: a training that was stopped may be given more of them."""
+        first = "nothing" if self.begin_with is None else f"weights {digest_of(self.begin_with)[:12]}"
+        pictures = f"{self.homes} homes of {self.per_home} pictures"
+        return f"from {first}, {pictures}, seed {self.seed}, rate {self.rate:g}"
 
 
 def train_detector(
@@ -111,6 +117,7 @@ def train_detector(
             budget_s=left_s * share[name] / sum(share[trained] for trained in plan.networks),
             peak_rate=PEAK_RATE * plan.rate,
             checkpoint=checkpoints[name],
+            purpose=str(plan),
             clock=clock,
         )
         for name in plan.networks

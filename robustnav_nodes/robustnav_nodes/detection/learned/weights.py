@@ -46,6 +46,11 @@ def save_weights(path: Path, weights: Weights) -> None:
         np.savez_compressed(file, **{_FACTS: np.array(json.dumps(facts))}, **arrays)  # type: ignore[arg-type]
 
 
+def digest_of(weights: Weights) -> str:
+    """What tells these weights from others; the same after they were saved and read."""
+    return _digest({**_arrays(_DETECTOR, weights.detector), **_arrays(_LOOK, weights.look)})
+
+
 def load_weights(path: Path = SHIPPED, labels: Sequence[str] | None = None) -> Weights:
     """Read weights, ready for use.
 
