@@ -156,5 +156,4 @@ def _place_errors(
 
 def _of_classes(boxes: Boxes, labels: Sequence[int]) -> Boxes:
     """Only boxes of these classes: of the others nobody knows whether they are there."""
-    kept = np.isin(boxes.label, np.array(labels, dtype=np.uint32))
-    return Boxes(box_px=boxes.box_px[kept], score=boxes.score[kept], label=boxes.label[kept])
+    return boxes[np.isin(boxes.label, np.array(labels, dtype=np.uint32))]

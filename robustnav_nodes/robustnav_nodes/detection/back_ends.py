@@ -2,11 +2,16 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.detection.class_names import read_class_names
 from robustnav_nodes.detection.parameters import DetectionParameters
 from robustnav_nodes.detection.pixel_detector import PixelDetector
+
+if TYPE_CHECKING:  # they stand on torch
+    from robustnav_nodes.detection.learned.detector import LearnedDetector
+    from robustnav_nodes.detection.learned.wanted_instance import WantedInstance
 
 
 def make_detector(parameters: DetectionParameters) -> PixelDetector:
@@ -32,6 +37,35 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
             f"back_end {parameters.back_end!r} cannot run here: {error}; "
             f"install what it stands on: pip install 'robustnav[{extra}]'"
         ) from error
+
+
+def make_instance(parameters: DetectionParameters, detector: PixelDetector) -> "WantedInstance | None":
+    """The one object that `parameters` ask for, if they do, as `detector` (made from them) knows it.
+
+    Raises BadParameterError where the back end cannot tell one object from others, or not which one is
+    meant; BadFileError where its picture cannot be read.
+    """
+    if parameters.back_end != "learned":
+        refuse_instance(parameters)
+    if not parameters.instance_picture:
+        return None
+    from robustnav_nodes.detection.learned.wanted_instance import WantedInstance, read_picture
+
+    return WantedInstance(
+        cast("LearnedDetector", detector),
+        read_picture(Path(parameters.instance_picture).expanduser()),
+        label=parameters.instance_class,
+        height_m=parameters.instance_height_m,
+    )
+
+
+def refuse_instance(parameters: DetectionParameters) -> None:
+    """Raises BadParameterError where one object alone is asked for."""
+    if parameters.instance_picture:
+        raise BadParameterError(
+            f"instance_picture is for the back end 'learned'; {parameters.back_end!r} cannot tell two "
+            "objects of a class apart"
+        )
 
 
 def _learned(parameters: DetectionParameters) -> PixelDetector:

@@ -22,7 +22,10 @@ class Boxes:
     def __len__(self) -> int:
         return len(self.score)
 
+    def __getitem__(self, kept: NDArray[np.bool_] | NDArray[np.int64]) -> "Boxes":
+        """Those that a mask [n] is true for, or those of these numbers, in their order."""
+        return Boxes(box_px=self.box_px[kept], score=self.score[kept], label=self.label[kept])
+
     def above(self, score_min: float) -> "Boxes":
         """Those with at least this score."""
-        kept = self.score >= score_min
-        return Boxes(box_px=self.box_px[kept], score=self.score[kept], label=self.label[kept])
+        return self[self.score >= score_min]

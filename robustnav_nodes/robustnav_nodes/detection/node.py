@@ -4,10 +4,12 @@ import sys
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Detections, VisibleObjects
-from robustnav_nodes.detection.back_ends import make_detector
+from robustnav_nodes.detection.back_ends import make_detector, make_instance, refuse_instance
 from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.dials import dials_by_class
 from robustnav_nodes.detection.drawing import draw_boxes
@@ -15,8 +17,7 @@ from robustnav_nodes.detection.image_complaints import check_registered, color_c
 from robustnav_nodes.detection.latest_images import ImageParts, LatestImages
 from robustnav_nodes.detection.pace import Pace
 from robustnav_nodes.detection.parameters import TRUTH, DetectionParameters
-from robustnav_nodes.detection.pixel_detector import PixelDetector
-from robustnav_nodes.detection.placement import place_boxes
+from robustnav_nodes.detection.placement import depths_m, place_boxes
 from robustnav_nodes.detection.truth_detector import TruthDetector
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
@@ -40,6 +41,24 @@ class _Waiting:
     color: ColorImage
 
 
+class _Looker:
+    """The back end and, where one object alone is meant, what tells it from others; for the worker."""
+
+    def __init__(self, parameters: DetectionParameters) -> None:
+        """Takes seconds. Raises what `make_detector` and `make_instance` raise."""
+        self._detector = make_detector(parameters)
+        self._instance = make_instance(parameters, self._detector)
+        self.labels = self._detector.labels
+
+    def look(self, waiting: _Waiting, parameters: DetectionParameters) -> Boxes:
+        image, boxes = waiting.image, self._detector.detect(waiting.color).above(parameters.score_min)
+        if self._instance is None:
+            return boxes
+        z_m = depths_m(boxes, image.depth, image.camera, parameters)
+        heights_m = ((boxes.box_px[:, 3] - boxes.box_px[:, 1]) * z_m / image.camera.fy).astype(np.float32)
+        return self._instance.kept(waiting.color, boxes, heights_m, parameters.instance_likeness_min)
+
+
 class Detection(GraphNode[DetectionParameters]):
     """Says which objects each image shows, and where they are.
 
@@ -56,15 +75,17 @@ class Detection(GraphNode[DetectionParameters]):
     declaration = DetectionParameters
 
     def configure(self) -> None:
-        """Open the topics."""
+        """Open the topics. Raises BadParameterError where truth is asked for one object alone."""
         self._by_truth = self.parameters.back_end == TRUTH
+        if self._by_truth:
+            refuse_instance(self.parameters)
         self._configured = self.parameters
         self._images = LatestImages(self.parameters.image_wait, by_color=not self._by_truth)
         self._poses = PoseHistory()
         self._camera: CameraModel | None = None
         self._labels: tuple[str, ...] = ()
         self._truth: TruthDetector | None = None
-        self._looker: PixelDetector | None = None
+        self._looker: _Looker | None = None
         self._next: _Waiting | None = None
         self._looked_ns: int | None = None
         self._unplaced = 0
@@ -123,9 +144,9 @@ class Detection(GraphNode[DetectionParameters]):
     def _load(self) -> None:
         """Make the back end, unless it is there: weights may come later, or a parameter be set right."""
         if self._looker is None and not self._worker.busy:
-            self._worker.submit(partial(make_detector, self._configured), self._on_looker)
+            self._worker.submit(partial(_Looker, self._configured), self._on_looker)
 
-    def _on_looker(self, looker: PixelDetector) -> None:
+    def _on_looker(self, looker: _Looker) -> None:
         self._looker, self._labels = looker, looker.labels
         self._names.publish(wire.labels_to_message(looker.labels))
         self._look_on()
@@ -191,11 +212,12 @@ class Detection(GraphNode[DetectionParameters]):
         if waiting is None or looker is None or self._worker.busy:
             return
         self._next, self._looked_ns = None, waiting.color.stamp_ns
-        self._worker.submit(partial(looker.detect, waiting.color), partial(self._on_boxes, waiting.image))
+        look = partial(looker.look, waiting, self.parameters)
+        self._worker.submit(look, partial(self._on_boxes, waiting.image))
 
     def _on_boxes(self, image: _Image, boxes: Boxes) -> None:
         try:
-            self._say(image, boxes.above(self.parameters.score_min))
+            self._say(image, boxes)
         finally:  # a bad depth image must not keep the next one waiting
             self._look_on()
 

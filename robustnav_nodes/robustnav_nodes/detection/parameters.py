@@ -70,6 +70,18 @@ class DetectionParameters:
     input_size_px: int = parameter(
         640, "onnx: side of the square that the model looks at", unit="px", low=32, high=4096
     )
+    instance_picture: str = parameter(
+        "", "learned: picture of the one object that is meant; others of its class are left out"
+    )
+    instance_class: str = parameter(
+        "", "learned: the class of what instance_picture shows, empty: what the detector sees there"
+    )
+    instance_height_m: float = parameter(
+        0.0, "learned: how tall that object is, 0: not known", unit="m", low=0.0, high=5.0
+    )
+    instance_likeness_min: float = parameter(
+        0.8, "learned: what is less like it is left out; 1 is the same look", low=0.0, high=1.0
+    )
     rate_max_hz: float = parameter(
         0.0,
         "learned, onnx, open_vocabulary: at most so many images a second, by their stamps; 0: no limit",

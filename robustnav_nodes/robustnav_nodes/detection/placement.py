@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadMessageError
-from robustnav_msgs_py.values import CameraModel, DepthImage, Detections, Float32
+from robustnav_msgs_py.values import CameraModel, DepthImage, Detections, Float32, Float64
 from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.parameters import DetectionParameters
 
@@ -27,36 +27,38 @@ def place_boxes(
     no place is better than a wrong one. Raises BadMessageError where the depth image is not of the camera's
     size.
     """
-    height, width = depth.depth_m.shape
-    if (width, height) != (camera.width, camera.height):
-        raise BadMessageError(
-            f"the depth image has {width} x {height} pixels, camera_info {camera.width} x {camera.height}"
-        )
-    kept: list[int] = []
-    places: list[tuple[float, float, float]] = []
-    for index, box in enumerate(boxes.box_px):
-        face_m = _face_m(depth.depth_m, box, parameters)
-        if face_m is None:
-            continue
-        u_min, v_min, u_max, v_max = (float(side) for side in box)
-        side_m = face_m * min((u_max - u_min) / camera.fx, (v_max - v_min) / camera.fy)
-        z = face_m + parameters.depth_behind * side_m
-        u, v = (u_min + u_max) / 2.0, (v_min + v_max) / 2.0
-        kept.append(index)
-        places.append(((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z))
+    z_m = depths_m(boxes, depth, camera, parameters)
+    placed = np.isfinite(z_m)
+    kept, z_m = boxes[placed], z_m[placed]
+    u, v = (kept.box_px[:, :2] + kept.box_px[:, 2:]).T / 2.0
+    position_m = np.column_stack([(u - camera.cx) / camera.fx * z_m, (v - camera.cy) / camera.fy * z_m, z_m])
     detections = Detections(
-        position_m=np.array(places, dtype=np.float32).reshape(-1, 3),
-        score=boxes.score[kept],
-        label=boxes.label[kept],
-        box_px=boxes.box_px[kept],
+        position_m=position_m.astype(np.float32),
+        score=kept.score,
+        label=kept.label,
+        box_px=kept.box_px,
         stamp_ns=depth.stamp_ns,
         frame_id=depth.frame_id,
     )
     return detections, len(boxes) - len(kept)
 
 
-def _face_m(depth_m: Float32, box: Float32, parameters: DetectionParameters) -> float | None:
-    """Depth of the surface that the object in `box` shows; None where too few samples are valid."""
+def depths_m(
+    boxes: Boxes, depth: DepthImage, camera: CameraModel, parameters: DetectionParameters
+) -> Float64:
+    """How far ahead the middle of each box's object is, [n] (m), as `place_boxes` says; NaN: not known."""
+    height, width = depth.depth_m.shape
+    if (width, height) != (camera.width, camera.height):
+        raise BadMessageError(
+            f"the depth image has {width} x {height} pixels, camera_info {camera.width} x {camera.height}"
+        )
+    face_m = np.array([_face_m(depth.depth_m, box, parameters) for box in boxes.box_px], dtype=np.float64)
+    sides = (boxes.box_px[:, 2:] - boxes.box_px[:, :2]) / (camera.fx, camera.fy)
+    return np.asarray(face_m * (1.0 + parameters.depth_behind * sides.min(axis=1)), dtype=np.float64)
+
+
+def _face_m(depth_m: Float32, box: Float32, parameters: DetectionParameters) -> float:
+    """Depth of the surface that the object in `box` shows; NaN where too few samples are valid."""
     height, width = depth_m.shape
     columns, rows = _pixels(box[0], box[2], width), _pixels(box[1], box[3], height)
     samples = depth_m[np.ix_(rows, columns)]
@@ -66,7 +68,7 @@ def _face_m(depth_m: Float32, box: Float32, parameters: DetectionParameters) -> 
     valid = np.isfinite(samples) & (samples > 0.0)
     near_first = samples[valid].astype(np.float64)
     if len(near_first) < parameters.depth_samples_min:
-        return None
+        return math.nan
     order = np.argsort(near_first, kind="stable")
     near_first, weights = near_first[order], np.maximum(weight[valid][order], EDGE_WEIGHT)
     ends = np.append(np.flatnonzero(np.diff(near_first) > parameters.depth_gap_m) + 1, len(near_first))

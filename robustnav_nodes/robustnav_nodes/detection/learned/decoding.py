@@ -39,4 +39,4 @@ def _each_once(boxes: Boxes) -> Boxes:
     for at in range(len(boxes)):
         if not same[at, kept].any():
             kept.append(at)
-    return Boxes(box_px=boxes.box_px[kept], score=boxes.score[kept], label=boxes.label[kept])
+    return boxes[np.array(kept, dtype=np.int64)]

@@ -66,7 +66,7 @@ def judge(found: list[Boxes], pictures: PictureSet, score_min: float) -> Judgeme
     truth = [truth_of(table, number) for number in range(len(pictures))]
     mean_ap, ap = mean_average_precision(found, truth, len(pictures.labels))
     counts = np.concatenate([real.counts for real in truth])
-    sure = [_better_than(boxes, score_min) for boxes in found]
+    sure = [boxes.above(score_min) for boxes in found]
     matches = [match_boxes(boxes, real) for boxes, real in zip(sure, truth, strict=True)]
     is_found = np.concatenate([matched.found_by >= 0 for matched in matches])
     judged = np.concatenate([~matched.ignored for matched in matches])
@@ -151,8 +151,3 @@ def _looks(
         rows = rows[wanted[rows]]
         looks[rows] = detector.embed(image_of(pictures, number), boxes[rows], metres_per_px[rows])
     return looks
-
-
-def _better_than(boxes: Boxes, score_min: float) -> Boxes:
-    sure = boxes.score >= score_min
-    return Boxes(box_px=boxes.box_px[sure], score=boxes.score[sure], label=boxes.label[sure])
