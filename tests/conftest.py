@@ -126,7 +126,7 @@ def bench() -> Iterator["Bench"]:
     rclpy.init(args=[])
     made = Bench()
     yield made
-    made.spinner.executor.shutdown()  # it holds the nodes, which would stay in the graph
+    made.spinner.close()
     for node in made.nodes:
         node.destroy_node()
     made.outside.destroy_node()
