@@ -30,6 +30,9 @@ DEV_READY := $(VENV)/.dev-ready-$(ROS)
 INSTALLED := pyproject.toml constraints.txt hatch_build.py \
 	$(wildcard */package.xml robustnav_nodes/config/* robustnav_nodes/launch/*)
 
+# These run all nodes of a search as processes, in real time: nothing else may want the cores.
+WHOLE_GRAPHS := tests/graph/test_one_process.py tests/graph/test_search.py
+
 say = @echo "==> $(1)"
 pip_install = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c $(PINS) --editable '.[$(1)]'
 
@@ -47,9 +50,9 @@ test: $(DEV_READY) ## run the tests; ARGS="-m slow" or ARGS="tests/belief -k ent
 ifdef ARGS
 	@$(BIN)/python -m pytest $(ARGS)
 else
-	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --ignore tests/graph
+	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(addprefix --ignore=,$(WHOLE_GRAPHS))
 	$(call say,Running the tests of whole graphs: they need every core)
-	@$(BIN)/python -m pytest tests/graph
+	@$(BIN)/python -m pytest $(WHOLE_GRAPHS)
 endif
 
 bench: $(RUN_READY) ## compare the planners on scenes made by seed; ARGS="--suite hard-noisy --episodes 200"

@@ -3,7 +3,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bags.manifest import (
@@ -41,7 +41,6 @@ MANIFESTS = st.builds(
 )
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])  # on a machine that does much else
 @given(MANIFESTS)
 def test_a_manifest_survives_as_json(manifest: Manifest) -> None:
     assert manifest_from_json(manifest.as_json()) == manifest

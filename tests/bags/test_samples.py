@@ -55,11 +55,10 @@ def test_the_search_found_what_it_was_asked_for() -> None:
     assert metrics.spl > 0.3
 
 
-def test_the_nodes_of_today_say_the_same_in_every_process() -> None:
-    for _ in range(2):
-        verified = robustnav("bag", "verify", str(SEARCH))
-        assert verified.returncode == 0, verified.stdout + verified.stderr
-        assert "the same, message by message" in verified.stdout
+def test_the_nodes_of_today_say_the_same_in_a_process_of_their_own() -> None:
+    verified = robustnav("bag", "verify", str(SEARCH))
+    assert verified.returncode == 0, verified.stdout + verified.stderr
+    assert "the same, message by message" in verified.stdout
 
 
 def test_one_changed_parameter_is_told_by_the_first_other_decision(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robustnav_msgs_py.detector_statistics import ClassStatistics
@@ -59,6 +59,7 @@ def test_nothing_seen_nothing_learnt():
 
 
 @given(recall=st.floats(0.05, 0.95), precision=st.floats(0.3, 0.95), seed=st.integers(0, 2**16))
+@settings(max_examples=25)
 def test_it_converges_to_the_true_rates(recall, precision, seed):
     """Every look has the target in view; false alarms come at the rate that gives the precision."""
     rng = np.random.default_rng(seed)

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
+from robustnav_nodes import cli
 from robustnav_nodes.benchmarks import pomdp_returns
 from robustnav_nodes.benchmarks.bench_commands import bench_app
 from robustnav_nodes.benchmarks.pomdp_returns import MeanReturn
@@ -14,10 +15,9 @@ from robustnav_nodes.benchmarks.report_file import write_report
 from robustnav_nodes.benchmarks.search_bench import Gain, SearchRow
 
 EASY = ("search", "--suite", "easy-noisy", "--episodes", "12", "--planners", "random,greedy,lookahead")
-HERE = ("--workers", "1")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def bench():
     """Runs `robustnav bench ...` here; errors come through, as they do to the command line's own handler."""
 
@@ -41,19 +41,32 @@ def robustnav(*arguments):
     )
 
 
+@pytest.fixture(scope="module")
+def easy(bench, tmp_path_factory):
+    """A folder with the report and the pictures of a short search bench, and what it showed."""
+    folder = tmp_path_factory.mktemp("easy")
+    shown = bench(
+        *EASY, "--workers", "1", "--json", folder / "report.json", "--plots", folder / "made"
+    ).output
+    return folder, shown
+
+
 def figures(path):
     rows = json.loads(path.read_text())["rows"]
     return [{name: value for name, value in row.items() if "_ms_" not in name} for row in rows]
 
 
-def test_the_report_is_as_written_down_and_the_number_of_processes_changes_nothing(bench, tmp_path):
-    """BENCHMARKS.md: scripts depend on these names."""
-    here, elsewhere = tmp_path / "here.json", tmp_path / "elsewhere.json"
-    shown = bench(*EASY, *HERE, "--json", here).output
+def test_the_number_of_processes_changes_nothing(easy, tmp_path):
+    here, elsewhere = easy[0] / "report.json", tmp_path / "elsewhere.json"
     done = robustnav(*EASY, "--workers", "2", "--json", elsewhere)
     assert (done.returncode, done.stderr) == (0, "")
     assert figures(here) == figures(elsewhere)
-    report = json.loads(here.read_text())
+
+
+def test_the_report_is_as_written_down(easy):
+    """BENCHMARKS.md: scripts depend on these names."""
+    folder, shown = easy
+    report = json.loads((folder / "report.json").read_text())
     assert report["bench"] == "search"
     assert report["suite"] == "easy-noisy"
     assert (report["seed"], report["episodes"], report["default_planner"]) == (1, 12, "lookahead")
@@ -81,9 +94,8 @@ def test_a_report_is_replaced_whole(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_pictures_are_drawn(bench, tmp_path):
-    bench(*EASY, *HERE, "--plots", tmp_path / "made")
-    assert (tmp_path / "made" / "spl_by_length.png").read_bytes().startswith(b"\x89PNG")
+def test_pictures_are_drawn(easy):
+    assert (easy[0] / "made" / "spl_by_length.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
@@ -136,7 +148,13 @@ def test_a_damaged_scene_ends_the_command_with_a_sentence(tmp_path):
     assert done.returncode == 1
     assert done.stderr.startswith("robustnav: the scene file ")
     assert done.stderr.count("\n") == 1
-    assert robustnav("search", "--scenes", tmp_path / "c").returncode == 2
+
+
+def test_a_folder_without_scenes_exits_with_2(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["robustnav", "bench", "search", "--scenes", str(tmp_path)])
+    monkeypatch.setattr("signal.signal", lambda *_: None)
+    assert cli.main() == 2
+    assert capsys.readouterr().err.startswith("robustnav: there is no scene file")
 
 
 def test_pomcp_is_set_beside_what_is_published(bench, tmp_path, monkeypatch):
@@ -157,7 +175,15 @@ def test_pomcp_is_set_beside_what_is_published(bench, tmp_path, monkeypatch):
 
 def test_planner_sizes(bench, tmp_path):
     path, png = tmp_path / "a.json", tmp_path / "a.png"
-    bench("planner", "--sizes", "100", "--json", path, "--plot", png)
+    bench("planner", "--sizes", "100,300", "--seed", "3", "--json", path, "--plot", png)
     report = json.loads(path.read_text())
-    assert (report["bench"], len(report["rows"]), report["rows"][0]["poses"] > 50) == ("planner", 1, True)
+    assert report["bench"] == "planner"
+    assert [row["poses"] < 200 for row in report["rows"]] == [True, False]
+    for row in report["rows"]:
+        assert 0.0 < row["decision_ms_p50"] <= row["decision_ms_p95"]
+        assert row["lookahead_ms_p50"] > 0.0
+        assert row["simulated_steps_per_s"] > row["simulations_per_s"] > 0.0
+        assert row["belief_update_ms"] > 0.0
+        assert row["search_space_s"] > 0.0
+        assert row["rss_mb"] > 50.0
     assert png.exists()

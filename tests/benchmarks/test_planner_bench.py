@@ -4,7 +4,6 @@ import pytest
 from robustnav_nodes.benchmarks.planner_bench import (
     PlannerRow,
     draw_planner_rows,
-    planner_rows,
     synthetic_floor,
 )
 from robustnav_nodes.search_space.parameters import SearchSpaceParameters
@@ -25,20 +24,6 @@ def test_a_floor_depends_on_its_seed_alone():
     floors = [synthetic_floor(1000, np.random.default_rng(seed))[0].cells for seed in (1, 1, 2)]
     np.testing.assert_array_equal(floors[0], floors[1])
     assert not np.array_equal(floors[0], floors[2])
-
-
-def test_a_row_for_each_size_as_it_is_measured():
-    heard = []
-    rows = planner_rows((100, 300), seed=3, progress=heard.append)
-    assert rows == heard
-    assert [row.poses < 200 for row in rows] == [True, False]
-    for row in rows:
-        assert 0.0 < row.decision_ms_p50 <= row.decision_ms_p95
-        assert row.lookahead_ms_p50 > 0.0
-        assert row.simulated_steps_per_s > row.simulations_per_s > 0.0
-        assert row.belief_update_ms > 0.0
-        assert row.search_space_s > 0.0
-        assert row.rss_mb > 50.0
 
 
 def test_growth_is_drawn(tmp_path):

@@ -198,7 +198,7 @@ class TestPlay:
             "from robustnav_nodes.benchmarks.search_workers import play_here\n"
             "if __name__ == '__main__':\n"
             "    chosen = contestants(['random'], dock=False, simulations=64)\n"
-            "    jobs = suite_jobs('easy-noisy', seed=1, episodes=5000, contestants=chosen)\n"
+            "    jobs = suite_jobs('easy-noisy', seed=1, episodes=1000, contestants=chosen)\n"
             "    for _ in play_here(jobs, 2):\n"
             "        print(*(child.pid for child in multiprocessing.active_children()), flush=True)\n"
         )

@@ -99,6 +99,11 @@ class RunningGraph:
                 return
         raise AssertionError(f"no search began again; {self.chat[-5:]}")
 
+    def close(self) -> None:
+        """Follow it no longer."""
+        self._spinner.close()
+        self.watcher.destroy_node()
+
     def has_ended(self) -> bool:
         """Whether the search is over."""
         return self.search.phase in ENDED
@@ -126,6 +131,6 @@ def running_graph(folder: Path, **settings: Any) -> Iterator[RunningGraph]:
         yield graph
     finally:
         codes = graph.processes.stop(first=STOPPED_FIRST)
-        graph.watcher.destroy_node()
+        graph.close()
         rclpy.try_shutdown()
     assert set(codes.values()) == {0}, (codes, graph.lines[-20:])

@@ -1,5 +1,7 @@
 """A whole search in lock-step: it ends, and each time, in whatever process, it is the same one."""
 
+import subprocess
+import sys
 from itertools import pairwise, zip_longest
 from pathlib import Path
 
@@ -9,6 +11,7 @@ from rclpy.serialization import deserialize_message
 from bags.comparison import differences
 from bags.metrics import search_metrics
 from bags.reader import open_bag
+from bags.replay import REPLAYED, replay
 from bags.search_run import read_search
 from robustnav_msgs_py.errors import GraphError
 from robustnav_msgs_py.records import SearchPhase
@@ -16,9 +19,28 @@ from robustnav_nodes.graph.lockstep import NS_PER_S, Said
 from robustnav_nodes.graph.lockstep_run import LockstepRun
 from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.search_graph import RunPlan
+from tests import lockstep_search
 from tests.lockstep_search import SEED, plan_of
 
 STEP_NS = 20_000_000
+PATIENCE_S = 300.0  # where other tests have the cores
+
+
+@pytest.fixture(scope="module")
+def lockstep_bags(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The bags of one search in lock-step, recorded twice, each in a fresh process."""
+    folders = [tmp_path_factory.mktemp("lockstep") for _ in range(2)]
+    script = Path(lockstep_search.__file__)
+    processes = [
+        subprocess.Popen(
+            [sys.executable, str(script), str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        for folder in folders
+    ]
+    for process in processes:
+        output, _ = process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 0, output.decode(errors="replace")[-2000:]
+    return [folder / "bag" for folder in folders]
 
 
 def test_the_search_ends_and_its_bag_tells_of_it(lockstep_bags: list[Path]) -> None:
@@ -56,6 +78,19 @@ def test_two_processes_say_the_same(lockstep_bags: list[Path]) -> None:
             found = list(differences(*(deserialize_message(raw.data, kind) for raw in (one, other))))
             assert not found, (one.topic, count, found)
         assert count > 1000
+
+
+def test_the_nodes_say_again_what_was_recorded(lockstep_bags: list[Path]) -> None:
+    with open_bag(lockstep_bags[0]) as bag:
+        again = replay(bag)
+    assert again.is_same, again.first
+    assert again.first is None
+    assert again.nodes == REPLAYED
+    assert again.inputs > 1000
+    for topic in again.topics:
+        assert topic.same == topic.replayed == topic.recorded > 0, topic
+    compared = {topic.topic for topic in again.topics}
+    assert {"/planner/decision", "/detections", "/belief/cloud", "/goal_pose", "/chat/to_user"} <= compared
 
 
 def test_a_run_ends_at_its_limit_and_tells_its_parameters(tmp_path: Path) -> None:

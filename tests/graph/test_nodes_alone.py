@@ -36,9 +36,16 @@ ROWS = [row for row in ALL if row.in_graph]
 
 @contextmanager
 def running(package: str, executable: str, *arguments: str) -> Iterator["subprocess.Popen[str]"]:
-    """A node's process, as `robustnav run` starts it; killed if a test leaves it running."""
-    command = [sys.executable, "-m", "robustnav_nodes", "run", package, executable, "--ros-args", *arguments]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    """A node's process, as `robustnav run` starts it."""
+    with started("-m", "robustnav_nodes", "run", package, executable, "--ros-args", *arguments) as process:
+        yield process
+
+
+@contextmanager
+def started(*arguments: str) -> Iterator["subprocess.Popen[str]"]:
+    """A Python of its own, killed if a test leaves it running."""
+    command, pipe = [sys.executable, *arguments], subprocess.PIPE
+    process = subprocess.Popen(command, stdout=pipe, stderr=subprocess.STDOUT, text=True)
     watchdog = threading.Timer(2 * DEADLINE_S, process.kill)
     watchdog.start()
     try:
@@ -167,6 +174,21 @@ def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
         wait_for_line(process, f"{tmp_path}/file")
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=DEADLINE_S)
+    assert process.returncode == 0
+
+
+def test_nothing_of_the_middleware_runs_on_when_the_nodes_have_ended() -> None:
+    """A process can die of threads that are left when Python goes. Fast DDS keeps one that watches memory."""
+    code = (
+        "from pathlib import Path; from robustnav_nodes.dialogue.node import main; main()\n"
+        "names = [task.joinpath('comm').read_text().strip() for task in Path('/proc/self/task').iterdir()]\n"
+        "print('left:', [name for name in names if name.startswith('dds.') and name != 'dds.shm.wdog'])"
+    )
+    with started("-c", code) as process:
+        wait_for_line(process, "dialogue is active")
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=DEADLINE_S)
+    assert output.splitlines()[-1] == "left: []"
     assert process.returncode == 0
 
 

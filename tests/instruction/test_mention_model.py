@@ -21,10 +21,10 @@ pytest.importorskip("torch")
 pytest.importorskip("sklearn")
 
 
-def trained(*, homes: int, walks: int, protocols: tuple[Protocol, ...]) -> LearnedModel:
+def trained(*, homes: int, walks: int, protocols: tuple[Protocol, ...], iterations: int = 25) -> LearnedModel:
     from robustnav_nodes.instruction.mention_training import TreeSettings, train_mentions
 
-    settings = TreeSettings(iterations=25, least_in_leaf=5, ensembles=1, folds=2, learning_rate=0.2)
+    settings = TreeSettings(iterations=iterations, least_in_leaf=5, ensembles=1, folds=2, learning_rate=0.2)
     said = said_walks(homes=homes, walks=walks, seed=0)
     return train_mentions(said, anything_goes(), settings, seed=1, protocols=protocols, say=lambda _: None)
 
@@ -67,7 +67,7 @@ def test_the_wrong_word_is_found(learned: LearnedModel) -> None:
 
 
 def test_the_same_seed_learns_the_same_model() -> None:
-    once, again = (trained(homes=3, walks=2, protocols=PROTOCOLS) for _ in range(2))
+    once, again = (trained(homes=3, walks=2, protocols=PROTOCOLS, iterations=4) for _ in range(2))
     for one in episodes("all")[:6]:
         for protocol in PROTOCOLS:
             first = once.model(protocol).judge(one.trajectory, one.tokens)

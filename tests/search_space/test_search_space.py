@@ -75,10 +75,10 @@ def test_ten_million_cells_are_refused_quickly(floor, masked, sentence, two_room
     marks[100:110, 100:110] = 100
     mask = OccupancyMap(cells=marks, resolution_m=0.05, origin=ORIGIN) if masked else None
     tracemalloc.start()
-    began = time.monotonic()
+    began = time.process_time()
     with pytest.raises(BadMapError, match=sentence):
         SearchSpace.build(floor_map, mask, parameters, ORIGIN)
-    took_s = time.monotonic() - began
+    took_s = time.process_time() - began
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert took_s < 5.0
@@ -95,9 +95,9 @@ def test_a_hundred_thousand_poses_and_candidates(two_rooms, parameters):
         OccupancyMap(cells=np.tile(cells, (100, 100)), resolution_m=0.05, origin=ORIGIN)
         for cells in (tile, marks)
     )
-    began = time.monotonic()
+    began = time.process_time()
     space = SearchSpace.build(floor_map, mask, SearchSpaceParameters(spacing_m=1.65))
-    took_s = time.monotonic() - began
+    took_s = time.process_time() - began
     assert len(space.graph) > 90_000
     assert len(space.candidates) == 100_000
     assert took_s < 20.0

@@ -59,7 +59,7 @@ def chat(console: Console) -> int:
     spinner.executor.add_node(terminal)
     console.print("[dim]waiting for the robot's dialogue ...[/]")
     if not spinner.spin_until(terminal.is_heard, timeout_s=float("inf")):
-        return _leave(terminal)
+        return _leave(spinner, terminal)
     console.print("[dim]talk to the robot; Ctrl-D ends[/]")
     ended = threading.Event()
 
@@ -72,10 +72,11 @@ def chat(console: Console) -> int:
     spinner.spin_until(ended.is_set, timeout_s=float("inf"))
     end_s = time.monotonic() + LAST_ANSWERS_S
     spinner.spin_until(lambda: time.monotonic() > end_s, LAST_ANSWERS_S)
-    return _leave(terminal)
+    return _leave(spinner, terminal)
 
 
-def _leave(terminal: Terminal) -> int:
+def _leave(spinner: Spinner, terminal: Terminal) -> int:
+    spinner.close()
     terminal.destroy_node()
     rclpy.try_shutdown()
     return 0

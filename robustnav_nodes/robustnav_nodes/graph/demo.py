@@ -73,6 +73,7 @@ class Demo:
         finally:
             screen.say("[dim]closing the bag and stopping the nodes[/]", "")
             graph.stop(first=STOPPED_FIRST)
+            spinner.close()
             watcher.destroy_node()
             rclpy.try_shutdown()
             clean_shared_memory()

@@ -64,7 +64,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         try:
             self._bound: NodeParameters[P] = NodeParameters(self, self.declaration, self._parameters_changed)
         except RobustnavError:
-            super().destroy_node()  # or its shared memory would stay behind; the subclass is not made yet
+            GraphNode.destroy_node(self)  # or its shared memory would stay behind; no subclass is made yet
             raise
         self._service_change_state.callback = self._on_change_state
         # A wiring of its own, which clean-up leaves alone: diagnostics go on in every state, and while
@@ -91,6 +91,15 @@ class GraphNode(LifecycleNode, Generic[P]):
 
     def parameters_changed(self) -> None:
         """Called after a parameter was set while the node runs; `self.parameters` is new."""
+
+    def destroy_node(self) -> None:
+        """Take the node down, and with it the state machine, which rclpy leaves alone.
+
+        It holds the node's place in the middleware, whose threads would go on until the garbage is collected,
+        or past the end of Python.
+        """
+        super().destroy_node()
+        self._state_machine.destroy_when_not_in_use()
 
     @property
     def unknown_parameters(self) -> frozenset[str]:

