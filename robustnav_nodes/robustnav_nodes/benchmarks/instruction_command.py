@@ -47,6 +47,9 @@ def instruction_command(
     model: Annotated[
         Path | None, typer.Option(help="what `robustnav train iedl` wrote; default: what comes along")
     ] = None,
+    clip_folder: Annotated[
+        Path | None, typer.Option(help="CLIP that IEDL was trained with; it looks at images/ of --data")
+    ] = None,
     protocol: Annotated[ProtocolChoice, typer.Option(help="how wrong words are drawn")] = ProtocolChoice.BOTH,
     models: Annotated[str | None, typer.Option(help="a,b,c; default: all of them")] = None,
     episodes: Annotated[
@@ -62,6 +65,7 @@ def instruction_command(
     ] = None,
 ) -> None:
     """How well wrong instructions are told from right ones, and the wrong words found in them."""
+    from robustnav_nodes.benchmarks.clip_of_pack import clip_of_pack
     from robustnav_nodes.benchmarks.generated_instructions import VAL_UNSEEN
     from robustnav_nodes.benchmarks.instruction_bench import (
         THESIS,
@@ -88,7 +92,8 @@ def instruction_command(
     console = Console(highlight=False)
     learned = load_model(model or SHIPPED)
     wanted = None if models is None else [name.strip() for name in models.split(",")]
-    asked = {name: contestants_of(learned, name, seed, wanted) for name in _protocols(protocol)}
+    encoder, images = (None, None) if clip_folder is None else clip_of_pack(clip_folder, data)
+    asked = {name: contestants_of(learned, name, seed, wanted, encoder) for name in _protocols(protocol)}
     began = time.monotonic()
     console.print("[dim]reading the walks and what was said[/]")
     found = bench_episodes(
@@ -100,6 +105,8 @@ def instruction_command(
         common_sense=common_sense,
         say=lambda told: console.print(f"[dim]{told}[/]"),
     )
+    if images is not None:
+        images.check(one.trajectory for parts in found.values() for part in parts.values() for one in part)
     rows: list[InstructionRow] = []
     pairs: list[PairRow] = []
     calibrations: list[Calibration] = []
@@ -136,6 +143,7 @@ def instruction_command(
             "data": "generated" if data is None else data.name,
             "model": "shipped" if model is None else model.name,
             "trained_on": learned.card.get("data"),
+            "iedl_encoder": learned.iedl_encoder,
             "episodes_of_a_type": episodes,
             "common_sense": common_sense,
         }
