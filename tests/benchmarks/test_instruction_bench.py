@@ -205,6 +205,7 @@ def test_the_command_writes_a_row_for_each_model_and_type(model: Path, tmp_path:
     steps = {step["protocol"]: step for step in report["online_step_ms"]}
     assert set(steps) == {"uniform", "matched"}
     assert all(0.0 < step["median_ms"] <= step["p95_ms"] for step in steps.values())
+    assert set(report["thesis"]) == {"thesis: random", "thesis: CLIP grounding", "thesis: IEDL"}
     assert "…" not in done.output  # nothing is cut off in a terminal of 80 columns
     assert (tmp_path / "instruction_auc.png").stat().st_size > 10_000
     assert (tmp_path / "instruction_reliability.png").exists()

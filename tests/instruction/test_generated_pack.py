@@ -39,6 +39,7 @@ def test_the_loader_reads_what_was_generated(folder: Path) -> None:
     for ours, theirs in zip(made, read, strict=True):
         assert (ours.tokens, ours.group) == (theirs.tokens, theirs.group)
         for here, there in zip(ours.trajectory.viewpoints, theirs.trajectory.viewpoints, strict=True):
+            assert there.place == here.place
             assert there.x_m == pytest.approx(here.x_m, abs=1e-3)
             assert math.remainder(there.yaw_in_rad - here.yaw_in_rad, math.tau) == pytest.approx(
                 0.0, abs=5e-3

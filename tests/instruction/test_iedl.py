@@ -131,13 +131,13 @@ def test_another_trainings_checkpoint_is_refused(tmp_path: Path) -> None:
 def test_saved_weights_judge_the_same(tmp_path: Path) -> None:
     model = training(tmp_path / "c", epochs=1).run(lambda _: None)
     arrays, shape = arrays_of_iedl(model)
-    read = iedl_from_arrays(arrays, shape)
+    read = iedl_from_arrays(arrays, shape, SemanticEncoder())
     assert judged(read, EXAM[0]) == pytest.approx(judged(model, EXAM[0]), abs=0.01)
     del arrays["iedl/cls"]
     with pytest.raises(BadFileError, match="do not fit together"):
-        iedl_from_arrays(arrays, shape)
+        iedl_from_arrays(arrays, shape, SemanticEncoder())
     with pytest.raises(BadFileError, match="train it anew"):
-        iedl_from_arrays(arrays, {**shape, "places": 7})
+        iedl_from_arrays(arrays, {**shape, "places": 7}, SemanticEncoder())
 
 
 @pytest.mark.parametrize("words", [0, 1, 80, 300])

@@ -163,16 +163,24 @@ def test_two_rays_meet_and_one_does_not(folders: SourceFolders) -> None:
         ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "hall", "room label"),
         ("mp/metadata/category_mapping.tsv", "mpcat40", "mpcat", "the columns raw_category and mpcat40"),
         ("mp/tasks/region_classification/data/train_room_pano_label.txt", "11", "13", "room label"),
+        (
+            "fg/source/R2R-original/R2R_train.json",
+            '"path": ["onea"',
+            '"path": ["nowhere"',
+            "'nowhere'.*viewpoints of viewpoints",  # noticed when all but the errors is written
+        ),
     ],
 )
-def test_a_bad_source_is_named(
+def test_a_bad_source_is_named_and_no_pack_is_left(
     folders: SourceFolders, tmp_path: Path, path: str, old: str, new: str, said: str
 ) -> None:
     text = (tmp_path / path).read_text()
     assert old in text
     (tmp_path / path).write_text(text.replace(old, new, 1))
+    before = sorted(tmp_path.iterdir())
     with pytest.raises(BadFileError, match=said):
-        build_r2r_pack(folders, tmp_path / "pack", ["train", "val_seen"], seed=1)
+        build_r2r_pack(folders, tmp_path / "new" / "pack", ["train", "val_seen"], seed=1)
+    assert sorted(tmp_path.iterdir()) == before
 
 
 @pytest.mark.parametrize("gone", ["fg", "sim", "mp", "reverie"])

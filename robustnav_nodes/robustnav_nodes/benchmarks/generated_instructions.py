@@ -120,10 +120,17 @@ def write_generated_pack(
 ) -> dict[str, int]:
     """Write a pack into `folder`; `advanced` is told how many more homes are done.
 
-    Returns walks and instructions by split, and homes. Raises BadFileError where the folder holds a pack or
-    cannot be written, or a split came out empty.
+    Returns walks and instructions by split, and homes. Raises BadFileError, and leaves nothing, where the
+    folder holds anything or cannot be written, or a split came out empty.
     """
-    writer = PackWriter(folder)
+    with PackWriter(folder) as writer:
+        lines = _surveyed(plan, workers, advanced)
+        counts = lines.write(writer, plan)
+        write_errors(writer, [split for split in SPLITS if lines.walks[split]], plan.seed)
+    return counts
+
+
+def _surveyed(plan: GenerationPlan, workers: int, advanced: Callable[[int], object]) -> "_Lines":
     lines = _Lines()
     numbers = range(plan.homes + plan.unseen)
     jobs = [(plan, numbers[at : at + _HOMES_A_JOB]) for at in range(0, len(numbers), _HOMES_A_JOB)]
@@ -135,10 +142,7 @@ def write_generated_pack(
         wanted = {TRAIN: plan.homes, VAL_SEEN: plan.homes * plan.walks_seen, VAL_UNSEEN: plan.unseen}[split]
         if wanted and not lines.walks[split]:
             raise BadFileError(f"no walk of {split} came out of seed {plan.seed}; ask for more homes")
-    counts = lines.write(writer, plan)
-    write_errors(writer, [split for split in SPLITS if lines.walks[split]], plan.seed)
-    writer.sums()
-    return counts
+    return lines
 
 
 class _Lines:

@@ -286,9 +286,9 @@ def online_step_time(
 
 # The thesis' table 4.2 (R2RIE-CE, another simulator, its own visual features): AUC and ATD by type of error.
 THESIS: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "th. random": {MEAN: (0.50, 11.26)},
-    "th. CLIP": {MEAN: (0.59, 9.22)},
-    "th. IEDL": {
+    "thesis: random": {MEAN: (0.50, 11.26)},
+    "thesis: CLIP grounding": {MEAN: (0.59, 9.22)},
+    "thesis: IEDL": {
         "direction": (0.58, 8.13),
         "room": (0.80, 7.73),
         "object": (0.74, 9.21),

@@ -27,6 +27,12 @@ _TYPES = {
     "all": "all",
     "mean": "mean",
 }
+# The published rows as the table names them: it is as narrow as a terminal.
+_THESIS_NAMES = {
+    "thesis: random": "th. random",
+    "thesis: CLIP grounding": "th. CLIP",
+    "thesis: IEDL": "th. IEDL",
+}
 _WALKED_OF_A_TYPE = 20  # episodes, to time a robot's steps
 
 
@@ -40,6 +46,9 @@ def instruction_command(
     ] = None,
     model: Annotated[
         Path | None, typer.Option(help="what `robustnav train iedl` wrote; default: what comes along")
+    ] = None,
+    clip_folder: Annotated[
+        Path | None, typer.Option(help="CLIP that IEDL was trained with; it looks at images/ of --data")
     ] = None,
     protocol: Annotated[ProtocolChoice, typer.Option(help="how wrong words are drawn")] = ProtocolChoice.BOTH,
     models: Annotated[str | None, typer.Option(help="a,b,c; default: all of them")] = None,
@@ -56,6 +65,7 @@ def instruction_command(
     ] = None,
 ) -> None:
     """How well wrong instructions are told from right ones, and the wrong words found in them."""
+    from robustnav_nodes.benchmarks.clip_of_pack import clip_of_pack
     from robustnav_nodes.benchmarks.generated_instructions import VAL_UNSEEN
     from robustnav_nodes.benchmarks.instruction_bench import (
         THESIS,
@@ -82,7 +92,8 @@ def instruction_command(
     console = Console(highlight=False)
     learned = load_model(model or SHIPPED)
     wanted = None if models is None else [name.strip() for name in models.split(",")]
-    asked = {name: contestants_of(learned, name, seed, wanted) for name in _protocols(protocol)}
+    encoder, images = (None, None) if clip_folder is None else clip_of_pack(clip_folder, data)
+    asked = {name: contestants_of(learned, name, seed, wanted, encoder) for name in _protocols(protocol)}
     began = time.monotonic()
     console.print("[dim]reading the walks and what was said[/]")
     found = bench_episodes(
@@ -94,6 +105,8 @@ def instruction_command(
         common_sense=common_sense,
         say=lambda told: console.print(f"[dim]{told}[/]"),
     )
+    if images is not None:
+        images.check(one.trajectory for parts in found.values() for part in parts.values() for one in part)
     rows: list[InstructionRow] = []
     pairs: list[PairRow] = []
     calibrations: list[Calibration] = []
@@ -130,6 +143,7 @@ def instruction_command(
             "data": "generated" if data is None else data.name,
             "model": "shipped" if model is None else model.name,
             "trained_on": learned.card.get("data"),
+            "iedl_encoder": learned.iedl_encoder,
             "episodes_of_a_type": episodes,
             "common_sense": common_sense,
         }
@@ -177,9 +191,8 @@ def _show(console: Console, rows: "Sequence[InstructionRow]") -> None:
             table.add_row(model, *(_two(by_type[name].auc, by_type[name].atd) for name in _TYPES), interval)
         if protocol == "uniform":
             for model, types in THESIS.items():
-                table.add_row(
-                    f"[dim]{model}[/]", *(_two(*types.get(name, (None, None))) for name in _TYPES), ""
-                )
+                figures = (_two(*types.get(name, (None, None))) for name in _TYPES)
+                table.add_row(f"[dim]{_THESIS_NAMES[model]}[/]", *figures, "")
         console.print(table)
     console.print("[dim]r & o: room & object. The thesis' rows (th.) are of other data: R2RIE-CE.[/]\n")
 

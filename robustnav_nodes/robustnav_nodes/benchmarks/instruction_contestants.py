@@ -7,17 +7,23 @@ from robustnav_msgs_py.errors import BadParameterError
 from robustnav_nodes.instruction.baselines import EntityGrounding, RandomGuess
 from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.model_file import LearnedModel
+from robustnav_nodes.instruction.panorama import PanoramicEncoder
 from robustnav_nodes.instruction.verdict import ErrorModel
 
 NAMES = ("random", "grounding", "surprise", "blind", "iedl", "mentions")
 
 
 def contestants_of(
-    learned: LearnedModel, protocol: Protocol, seed: int, wanted: Sequence[str] | None = None
+    learned: LearnedModel,
+    protocol: Protocol,
+    seed: int,
+    wanted: Sequence[str] | None = None,
+    encoder: PanoramicEncoder | None = None,
 ) -> dict[str, ErrorModel]:
     """Judges by name, baselines first; IEDL is missing where the file does not hold it, and without torch.
 
-    Raises BadParameterError for a name that is none, or that the file does not hold.
+    `encoder` is IEDL's (None: the semantic one). Raises BadParameterError for a name that is none, or that
+    the file does not hold, BadFileError where IEDL was trained with another encoder.
     """
     unknown = [name for name in wanted or () if name not in NAMES]
     if unknown:
@@ -27,7 +33,7 @@ def contestants_of(
         "grounding": EntityGrounding,
         "surprise": lambda: learned.surprise,
         "blind": lambda: learned.model(protocol, blind=True),
-        "iedl": learned.iedl if _has_torch() else lambda: None,
+        "iedl": lambda: learned.iedl(encoder) if _has_torch() else None,
         "mentions": lambda: learned.model(protocol),
     }
     found: dict[str, ErrorModel] = {}

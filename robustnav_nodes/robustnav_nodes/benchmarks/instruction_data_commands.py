@@ -12,7 +12,7 @@ MAX_SEED = 1_000_000_000
 
 
 def instructions_command(
-    out: Annotated[Path, typer.Option(help="folder to write the pack into; must not hold one")],
+    out: Annotated[Path, typer.Option(help="folder to make for the pack; must be missing or empty")],
     homes: Annotated[int, typer.Option(min=1, max=100_000, help="how many homes to train in")] = 300,
     unseen: Annotated[
         int | None, typer.Option(min=0, max=100_000, help="other homes; default: a fifth as many")
@@ -44,7 +44,7 @@ def instructions_command(
 
 
 def r2r_command(
-    out: Annotated[Path, typer.Option(help="folder to write the pack into; must not hold one")],
+    out: Annotated[Path, typer.Option(help="folder to make for the pack; must be missing or empty")],
     fine_grained_r2r: Annotated[Path, typer.Option(help="copy of YicongHong/Fine-Grained-R2R")],
     matterport_sim: Annotated[Path, typer.Option(help="copy of peteanderson80/Matterport3DSimulator")],
     reverie: Annotated[Path, typer.Option(help="copy of YuankaiQi/REVERIE")],

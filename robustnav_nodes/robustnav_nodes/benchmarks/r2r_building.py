@@ -51,13 +51,24 @@ def build_r2r_pack(
 ) -> dict[str, int]:
     """Write the pack of these splits into `folder`, with errors put in by our own injection.
 
-    `advanced` is told each scan that is done. Returns how much there is of what. Raises BadFileError where a
-    source is not as it should be, or `train`, of which common sense is learnt, is not among the splits.
+    `advanced` is told each scan that is done. Returns how much there is of what. Raises BadFileError, and
+    leaves nothing, where a source is not as it should be, the folder holds anything, or `train`, of which
+    common sense is learnt, is not among the splits.
     """
     if TRAIN not in splits:
         raise BadFileError(f"the splits {', '.join(splits)} lack {TRAIN}, of which common sense is learnt")
     check_boxes(folders)
-    writer = PackWriter(folder)
+    with PackWriter(folder) as writer:
+        return _write(writer, folders, splits, seed, advanced)
+
+
+def _write(
+    writer: PackWriter,
+    folders: SourceFolders,
+    splits: Sequence[str],
+    seed: int,
+    advanced: Callable[[str], object],
+) -> dict[str, int]:
     paths = {split: read_paths(folders, split) for split in splits}
     labels = read_rooms(folders)
     names = sorted({row.text("scan") for rows in paths.values() for row in rows})
@@ -95,7 +106,6 @@ def build_r2r_pack(
     for split, rows in paths.items():
         writer.rows(f"r2r_{split}.jsonl.gz", map(_path, rows))
     write_errors(writer, splits, seed)
-    writer.sums()
     return counts
 
 

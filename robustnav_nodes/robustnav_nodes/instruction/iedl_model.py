@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.instruction.iedl import MAX_WORDS, Iedl, IedlShape
-from robustnav_nodes.instruction.panorama import PanoramicEncoder, SemanticEncoder
+from robustnav_nodes.instruction.panorama import PanoramicEncoder
 from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.verdict import Verdict
 
@@ -81,14 +81,15 @@ def arrays_of_iedl(model: IedlModel) -> tuple[dict[str, NDArray[Any]], dict[str,
     return arrays, asdict(model.network.shape)
 
 
-def iedl_from_arrays(arrays: Mapping[str, NDArray[Any]], shape: Mapping[str, Any]) -> IedlModel:
-    """The reverse; the encoder is the semantic one. Raises BadFileError where the arrays do not fit."""
-    encoder = SemanticEncoder()
+def iedl_from_arrays(
+    arrays: Mapping[str, NDArray[Any]], shape: Mapping[str, Any], encoder: PanoramicEncoder
+) -> IedlModel:
+    """The reverse; `encoder` is that of the training. Raises BadFileError where the arrays do not fit."""
     network = Iedl(IedlShape(**shape))
     if network.shape.places != encoder.width:
         raise BadFileError(
-            f"IEDL was trained on viewpoints of {network.shape.places} numbers, and this version describes "
-            f"them by {encoder.width}: train it anew"
+            f"IEDL was trained on viewpoints of {network.shape.places} numbers, and the encoder "
+            f"{encoder.name!r} describes them by {encoder.width}: train it anew"
         )
     try:
         state = {

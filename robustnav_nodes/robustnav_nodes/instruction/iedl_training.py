@@ -228,6 +228,7 @@ class IedlTraining:
             "settings": asdict(self._settings) | {"minutes": None, "epochs": 0},  # may be prolonged
             "seed": self._seed,
             "data": self._data,
+            "encoder": self._encoder.name,
             "words": self._words,
         }
 
@@ -250,8 +251,8 @@ class IedlTraining:
             state = torch.load(self._checkpoint, weights_only=True)
             if state["facts"] != self._facts():
                 raise BadFileError(
-                    f"{str(self._checkpoint)!r} is the checkpoint of another training (other data, seed or "
-                    "sizes): remove it, or name another --out"
+                    f"{str(self._checkpoint)!r} is the checkpoint of another training (other data, encoder, "
+                    "seed or sizes): remove it, or name another --out"
                 )
             self._network.load_state_dict(state["network"])
             self._optimiser.load_state_dict(state["optimiser"])

@@ -21,6 +21,7 @@ from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
 from robustnav_nodes.instruction.mention_model import SUMMARY, MentionModel, Scorer
+from robustnav_nodes.instruction.panorama import SEMANTIC, PanoramicEncoder, SemanticEncoder
 from robustnav_nodes.instruction.place_model import PlaceModel
 from robustnav_nodes.instruction.side_model import FEATURES as SIDE_FEATURES
 from robustnav_nodes.instruction.side_model import SideModel
@@ -47,6 +48,7 @@ class LearnedModel:
     card: Mapping[str, Any]
     iedl_arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # of iedl_model.arrays_of_iedl
     iedl_shape: Mapping[str, Any] | None = None  # None: IEDL was not trained
+    iedl_encoder: str = SEMANTIC  # name of the encoder that IEDL was trained with
 
     def model(self, protocol: Protocol, *, blind: bool = False) -> MentionModel:
         """A judge for one protocol. Raises BadFileError where the file was not trained for it."""
@@ -56,13 +58,19 @@ class LearnedModel:
             raise BadFileError(f"the model is not trained for the protocol {protocol!r}, only for {known}")
         return MentionModel(self.knowledge, scorer, self.features)
 
-    def iedl(self) -> "IedlModel | None":
-        """The thesis' model, where it was trained. Raises BadFileError where its weights do not fit."""
+    def iedl(self, encoder: PanoramicEncoder | None = None) -> "IedlModel | None":
+        """The thesis' model, where it was trained, with the encoder of its training (None: the semantic one).
+
+        Raises BadFileError where that was another encoder, or the weights do not fit.
+        """
         if self.iedl_shape is None:
             return None
+        encoder = encoder or SemanticEncoder()
+        if encoder.name != self.iedl_encoder:
+            raise BadFileError(_other_encoder(self.iedl_encoder, encoder.name))
         from robustnav_nodes.instruction.iedl_model import iedl_from_arrays
 
-        return iedl_from_arrays(self.iedl_arrays, self.iedl_shape)
+        return iedl_from_arrays(self.iedl_arrays, self.iedl_shape, encoder)
 
 
 def save_model(path: Path, model: LearnedModel) -> None:
@@ -94,6 +102,7 @@ def save_model(path: Path, model: LearnedModel) -> None:
         "scorers": scorers,
         "card": dict(model.card),
         "iedl": None if model.iedl_shape is None else dict(model.iedl_shape),
+        "encoder": model.iedl_encoder,
     }
     unfinished = path.with_name(path.name + ".part")
     try:
@@ -165,7 +174,20 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
         card=header["card"],
         iedl_arrays={name: array for name, array in arrays.items() if name.startswith("iedl")},
         iedl_shape=header["iedl"],
+        iedl_encoder=str(header.get("encoder", SEMANTIC)),  # before there was a choice none was named
     )
+
+
+def _other_encoder(trained: str, given: str) -> str:
+    """A sentence; the other encoders than the semantic one are CLIP's."""
+    if given == SEMANTIC:
+        return (
+            f"this IEDL looks at pictures ({trained}): name the folder of its CLIP with --clip-folder, or "
+            "leave IEDL out with --models"
+        )
+    if trained == SEMANTIC:
+        return f"this IEDL looks at no pictures, and {given} was given: leave out --clip-folder"
+    return f"this IEDL was trained with {trained}, and --clip-folder holds {given}: name the former's folder"
 
 
 def _sides(arrays: Mapping[str, NDArray[Any]]) -> SideModel:

@@ -12,9 +12,15 @@ from numpy.typing import NDArray
 from robustnav_nodes.instruction.scene import FAR_M, scene_of
 from robustnav_nodes.instruction.trajectory import Trajectory
 
+SEMANTIC = "semantic"  # the name of the encoder that needs nothing but a detector
+
 
 class PanoramicEncoder(Protocol):
     """Turns the viewpoints of a trajectory into vectors, without learning anything."""
+
+    @property
+    def name(self) -> str:
+        """Written into the files of what was trained with it: equal names, equal vectors."""
 
     @property
     def width(self) -> int:
@@ -29,6 +35,10 @@ class SemanticEncoder:
 
     def __init__(self) -> None:
         self._width: int = self.encode(Trajectory()).shape[1]
+
+    @property
+    def name(self) -> str:
+        return SEMANTIC
 
     @property
     def width(self) -> int:

@@ -2,7 +2,7 @@
 
 The pack counts headings clockwise from +y; here everything becomes yaw, counter-clockwise from +x. The pack
 lists the objects within about 2 m of a viewpoint; those of the viewpoints in line of sight are added up to
-SIGHT_M.
+SIGHT_M. A pack may hold pictures, too: see `pack_images`.
 """
 
 import math
@@ -182,6 +182,7 @@ class R2rPack:
                         yaw_out_rad=yaws[k + 1],
                         rooms=place.rooms,
                         objects=tuple(self._in_sight(scan, names[k], yaws[k])),
+                        place=f"{scan}/{names[k]}",
                     )
                     for k, place in enumerate(places)
                 )

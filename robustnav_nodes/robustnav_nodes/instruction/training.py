@@ -16,6 +16,7 @@ from robustnav_nodes.instruction.episodes import Instruction
 from robustnav_nodes.instruction.mention_data import Say
 from robustnav_nodes.instruction.mention_training import TreeSettings, fold_of_groups, train_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel, load_model, save_model
+from robustnav_nodes.instruction.panorama import PanoramicEncoder, SemanticEncoder
 
 if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_training import EpochFigures, IedlSettings
@@ -39,8 +40,9 @@ def train_models(
     *,
     resume: bool,
     say: Say,
+    encoder: PanoramicEncoder | None = None,
 ) -> "tuple[LearnedModel, list[EpochFigures]]":
-    """Train, and write `out`; the model and IEDL's curve.
+    """Train, and write `out`; the model and IEDL's curve. IEDL sees by `encoder` (None: the semantic one).
 
     Raises BadParameterError where there is nothing to learn from, BadFileError where a file cannot be written
     or what is to be taken up belongs to another training.
@@ -61,7 +63,9 @@ def train_models(
         save_model(kept, model)
     curve: list[EpochFigures] = []
     if plan.iedl is not None:
-        model, curve = _with_iedl(model, instructions, common_sense, plan.iedl, checkpoint, say)
+        model, curve = _with_iedl(
+            model, instructions, common_sense, encoder or SemanticEncoder(), plan.iedl, checkpoint, say
+        )
     save_model(out, model)
     kept.unlink(missing_ok=True)
     checkpoint.unlink(missing_ok=True)
@@ -103,13 +107,13 @@ def _with_iedl(
     model: LearnedModel,
     instructions: Sequence[Instruction],
     common_sense: CommonSense,
+    encoder: PanoramicEncoder,
     settings: "IedlSettings",
     checkpoint: Path,
     say: Say,
 ) -> "tuple[LearnedModel, list[EpochFigures]]":
     from robustnav_nodes.instruction.iedl_model import arrays_of_iedl
     from robustnav_nodes.instruction.iedl_training import IedlTraining
-    from robustnav_nodes.instruction.panorama import SemanticEncoder
 
     seed: int = model.card["seed"]
     fold_of = fold_of_groups([one.group for one in instructions], folds=1, seed=seed)
@@ -117,7 +121,7 @@ def _with_iedl(
         [one for one in instructions if fold_of[one.group] != 0],
         [one for one in instructions if fold_of[one.group] == 0],
         common_sense,
-        SemanticEncoder(),
+        encoder,
         settings,
         seed=seed,
         data=model.card["digest"],
@@ -125,4 +129,5 @@ def _with_iedl(
     )
     arrays, shape = arrays_of_iedl(training.run(say))
     card = {**model.card, "iedl": {**asdict(settings), "epochs_trained": len(training.curve)}}
-    return replace(model, iedl_arrays=arrays, iedl_shape=shape, card=card), training.curve
+    learned = replace(model, iedl_arrays=arrays, iedl_shape=shape, iedl_encoder=encoder.name, card=card)
+    return learned, training.curve

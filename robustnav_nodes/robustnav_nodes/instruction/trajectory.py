@@ -54,7 +54,8 @@ class SeenObject:
 class Viewpoint:
     """One place on the way: where, the yaw on arriving and on leaving, the room and the objects in sight.
 
-    `rooms` holds a probability for each of ROOM_TYPES. At the last place both yaws are the same.
+    `rooms` holds a probability for each of ROOM_TYPES. At the last place both yaws are the same. `place` is
+    what its pictures are found by; empty where there are none.
     """
 
     x_m: float
@@ -64,6 +65,7 @@ class Viewpoint:
     yaw_out_rad: float
     rooms: tuple[float, ...] = UNKNOWN_ROOM
     objects: tuple[SeenObject, ...] = ()
+    place: str = ""
 
     def __post_init__(self) -> None:
         for name in ("x_m", "y_m", "z_m", "yaw_in_rad", "yaw_out_rad"):

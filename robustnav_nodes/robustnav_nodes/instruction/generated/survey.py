@@ -127,6 +127,7 @@ def trajectory_of(surveyed: Survey, walk: Walk) -> Trajectory:
                     )
                     for sighting in place.sightings
                 ),
+                place=f"{surveyed.dwelling.name}/{place.name}",
             )
         )
     return Trajectory(viewpoints=tuple(viewpoints))
