@@ -16,6 +16,8 @@ BOX_UNIT_PX, MAX_LOG_SIDE = 8.0, 4.0
 P_BEFORE_LEARNING = 0.01
 EMBEDDING = 64
 PATCH_PX = 48
+# The look network's features are an eighth of a piece on a side; so many numbers are kept of each place.
+PLACES, LAYOUT = (PATCH_PX // 8) ** 2, 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +75,8 @@ class DetectorNetwork(nn.Module):
 class LookNetwork(nn.Module):
     """Pieces of images, PATCH_PX on a side, to unit vectors: near each other where the looks are alike.
 
-    How large what they show is goes in, too (`extents`): a small mug looks like a large one afar.
+    How large what they show is goes in, too (`extents`): a small mug looks like a large one afar. A box is
+    seldom exact; where in its piece the object ends, the layout of the features tells.
     """
 
     def __init__(self) -> None:
@@ -86,15 +89,23 @@ class LookNetwork(nn.Module):
             _Residual(96),
             _convolution(96, 128),
         )
+        self.layout = nn.Sequential(
+            nn.Conv2d(128, LAYOUT, 1), nn.ReLU(), nn.Flatten(), nn.Linear(LAYOUT * PLACES, 64), nn.ReLU()
+        )
         self.size = nn.Sequential(nn.Linear(EXTENTS, 32), nn.ReLU())
-        self.both = nn.Sequential(nn.Linear(256 + 32, 192), nn.ReLU())
+        self.both = nn.Sequential(nn.Linear(256 + 64 + 32, 192), nn.ReLU())
         self.out = nn.Linear(192, EMBEDDING)
 
     def forward(self, patches: torch.Tensor, extents: torch.Tensor) -> torch.Tensor:
         """float [n, 3, PATCH_PX, PATCH_PX] in 0..1 and [n, EXTENTS] to float [n, EMBEDDING]."""
         features = self.features(patches - 0.5)
-        pooled = [features.mean(dim=(2, 3)), features.amax(dim=(2, 3)), self.size(extents)]
-        return functional.normalize(self.out(self.both(torch.cat(pooled, dim=1))).float(), dim=1)
+        seen = [
+            features.mean(dim=(2, 3)),
+            features.amax(dim=(2, 3)),
+            self.layout(features),
+            self.size(extents),
+        ]
+        return functional.normalize(self.out(self.both(torch.cat(seen, dim=1))).float(), dim=1)
 
 
 class _Residual(nn.Module):

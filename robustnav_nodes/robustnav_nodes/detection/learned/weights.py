@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_nodes.detection.learned.network import DetectorNetwork, LookNetwork, Widths
 
-FORMAT = "robustnav detector 2"
+FORMAT = "robustnav detector 3"
 SHIPPED = Path(__file__).with_name("weights.npz")
 REMEDY = "train them anew with `robustnav train detector`, or leave `model` empty for those that come along"
 _FACTS, _DETECTOR, _LOOK = "facts", "detector.", "look."
