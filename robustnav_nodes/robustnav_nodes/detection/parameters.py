@@ -80,7 +80,7 @@ class DetectionParameters:
         0.0, "learned: how tall that object is, 0: not known", unit="m", low=0.0, high=5.0
     )
     instance_likeness_min: float = parameter(
-        0.8, "learned: what is less like it is left out; 1 is the same look", low=0.0, high=1.0
+        0.95, "learned: what is less like it is left out; 1 is the same look", low=0.0, high=1.0
     )
     rate_max_hz: float = parameter(
         0.0,
