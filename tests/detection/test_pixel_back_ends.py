@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lifecycle_msgs.msg import State
+from rclpy.parameter import Parameter
 
 from robustnav_msgs_py import conversions as wire
-from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage
+from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Float32
 from robustnav_nodes.detection import node as detection_node
 from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.node import Detection
@@ -55,8 +57,6 @@ class Scene:
     """A node whose back end is `detector`, and what it is shown."""
 
     def __init__(self, bench: Bench, **parameters: Any) -> None:
-        from rclpy.parameter import Parameter
-
         chosen = {"back_end": "onnx", "load_again_s": 0.5} | parameters
         self.bench = bench
         overrides = [Parameter(name, value=value) for name, value in chosen.items()]
@@ -195,3 +195,56 @@ def test_a_missing_model_is_a_sentence_and_is_taken_when_it_comes(
     made.leave.release()
     monkeypatch.setattr(detection_node, "make_detector", lambda _parameters: made)
     bench.wait(lambda: scene.said() == [(S, 1)], "the image that waited")
+
+
+class OfHeight:
+    """Keeps what is as tall as it should be."""
+
+    told = "the mug in the picture"
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[list[float], float]] = []
+
+    def kept(self, _image: ColorImage, boxes: Boxes, heights_m: Float32, likeness_min: float) -> Boxes:
+        self.asked.append((heights_m.tolist(), likeness_min))
+        return boxes[np.isclose(heights_m, 0.6, atol=0.2)]
+
+
+def test_one_object_alone_is_reported_where_it_is_meant(
+    bench: Bench, detector: Watchful, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a box of 8 px at a focal length of 28 px, 2 m away and 8 m away."""
+    wanted = OfHeight()
+    monkeypatch.setattr(detection_node, "make_instance", lambda *_: wanted)
+    scene = Scene(bench, instance_likeness_min=0.5)
+    scene.give_camera()
+    for _ in range(3):
+        detector.leave.release()
+    for number, metres in enumerate((2.0, 8.0, float("nan")), start=1):
+        scene.show(number * S, with_depth=depth(number * S, metres))
+        bench.wait(lambda number=number: len(scene.heard) == number, "what was seen")
+    assert scene.said() == [(S, 1), (2 * S, 0), (3 * S, 0)]
+    (near,), (far,), (unknown,) = (heights_m for heights_m, _ in wanted.asked)
+    assert near == pytest.approx(2.0 * 8 / 28, rel=0.1)
+    assert far == pytest.approx(8.0 * 8 / 28, rel=0.1)
+    assert np.isnan(unknown)
+    assert {likeness_min for _, likeness_min in wanted.asked} == {0.5}
+    assert scene.figures()["the one object that is meant"] == "the mug in the picture"
+
+
+@pytest.mark.parametrize("back_end", ["truth", "onnx"])
+def test_a_back_end_that_knows_no_instances_is_refused_one_at_once(bench: Bench, back_end: str) -> None:
+    asked = {"back_end": back_end, "instance_picture": "mug.png"}
+    node = bench.add(
+        Detection(parameter_overrides=[Parameter(name, value=value) for name, value in asked.items()])
+    )
+    node.trigger_configure()
+    assert node.state_id == State.PRIMARY_STATE_UNCONFIGURED
+    told = node.health.status("n", []).values.values()
+    assert any("cannot tell two objects of a class apart" in value for value in told)
+
+
+def test_what_takes_configuring_says_so(bench: Bench, detector: Watchful) -> None:
+    scene = Scene(bench)
+    scene.node.set_parameters([Parameter("instance_class", value="mug")])
+    scene.expect_problem("'mug' is used from the next time that the node is configured; until then it is ''")

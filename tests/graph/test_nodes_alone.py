@@ -180,15 +180,25 @@ def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
 def test_nothing_of_the_middleware_runs_on_when_the_nodes_have_ended() -> None:
     """A process can die of threads that are left when Python goes. Fast DDS keeps one that watches memory."""
     code = (
-        "from pathlib import Path; from robustnav_nodes.dialogue.node import main; main()\n"
-        "names = [task.joinpath('comm').read_text().strip() for task in Path('/proc/self/task').iterdir()]\n"
-        "print('left:', [name for name in names if name.startswith('dds.') and name != 'dds.shm.wdog'])"
+        "from pathlib import Path; from robustnav_nodes.dialogue import node\n"
+        "def threads():\n"
+        "    comms = Path('/proc/self/task').glob('*/comm')\n"
+        "    names = [comm.read_text().strip() for comm in comms]\n"
+        "    return [name for name in names if name.startswith('dds.') and name != 'dds.shm.wdog']\n"
+        "class Dialogue(node.Dialogue):\n"
+        "    at_work = []\n"
+        "    def activate(self):\n"
+        "        super().activate()\n"
+        "        self.at_work.extend(threads())\n"
+        "node.Dialogue = Dialogue\n"
+        "node.main()\n"
+        "print(f'{len(Dialogue.at_work) > 0} left: {threads()}')"
     )
     with started("-c", code) as process:
         wait_for_line(process, "dialogue is active")
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=DEADLINE_S)
-    assert output.splitlines()[-1] == "left: []"
+    assert output.splitlines()[-1] == "True left: []"
     assert process.returncode == 0
 
 

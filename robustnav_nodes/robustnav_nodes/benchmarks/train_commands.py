@@ -34,6 +34,9 @@ def detector_command(
     only: Annotated[
         str, typer.Option(help="detector or look: the one to train; the other stays as in --begin-with")
     ] = "",
+    anew: Annotated[
+        bool, typer.Option("--anew", help="with --only: that network begins from nothing")
+    ] = False,
     rate: Annotated[
         float | None,
         typer.Option(
@@ -52,6 +55,8 @@ def detector_command(
 
     if only and only not in NETWORKS:
         raise BadParameterError(f"--only {only!r} is no network; there are {', '.join(NETWORKS)}")
+    if anew and not only:
+        raise BadParameterError("--anew is for the one network of --only; without weights both begin anew")
     begun = None if begin_with is None else load_weights(begin_with)
 
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -74,7 +79,8 @@ def detector_command(
             homes=homes,
             networks=(only,) if only else NETWORKS,
             begin_with=begun,
-            rate=rate if rate is not None else 1.0 if begun is None else RATE_OF_TRAINED,
+            anew=anew,
+            rate=rate if rate is not None else 1.0 if begun is None or anew else RATE_OF_TRAINED,
         )
         train_detector(out, plan, resume=resume, report=report)
     Console(highlight=False).print(f"{out}: judge it with `robustnav train judge --weights {out}`")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.detection.class_names import read_class_names
-from robustnav_nodes.detection.parameters import DetectionParameters
+from robustnav_nodes.detection.parameters import LEARNED, DetectionParameters
 from robustnav_nodes.detection.pixel_detector import PixelDetector
 
 if TYPE_CHECKING:  # they stand on torch
@@ -21,7 +21,7 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
     model or the class names cannot be read or do not fit each other.
     """
     makers: dict[str, Callable[[DetectionParameters], PixelDetector]] = {
-        "learned": _learned,
+        LEARNED: _learned,
         "onnx": _onnx,
         "open_vocabulary": _open_vocabulary,
     }
@@ -32,7 +32,7 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
     try:
         return makers[parameters.back_end](parameters)
     except ImportError as error:
-        extra = {"learned": "learn"}.get(parameters.back_end, parameters.back_end.replace("_", "-"))
+        extra = {LEARNED: "learn"}.get(parameters.back_end, parameters.back_end.replace("_", "-"))
         raise BadParameterError(
             f"back_end {parameters.back_end!r} cannot run here: {error}; "
             f"install what it stands on: pip install 'robustnav[{extra}]'"
@@ -42,11 +42,10 @@ def make_detector(parameters: DetectionParameters) -> PixelDetector:
 def make_instance(parameters: DetectionParameters, detector: PixelDetector) -> "WantedInstance | None":
     """The one object that `parameters` ask for, if they do, as `detector` (made from them) knows it.
 
-    Raises BadParameterError where the back end cannot tell one object from others, or not which one is
-    meant; BadFileError where its picture cannot be read.
+    Raises what `check_instance` raises, BadParameterError where it is not clear which object is meant, and
+    BadFileError where its picture cannot be read.
     """
-    if parameters.back_end != "learned":
-        refuse_instance(parameters)
+    check_instance(parameters)
     if not parameters.instance_picture:
         return None
     from robustnav_nodes.detection.learned.wanted_instance import WantedInstance, read_picture
@@ -59,11 +58,11 @@ def make_instance(parameters: DetectionParameters, detector: PixelDetector) -> "
     )
 
 
-def refuse_instance(parameters: DetectionParameters) -> None:
-    """Raises BadParameterError where one object alone is asked for."""
-    if parameters.instance_picture:
+def check_instance(parameters: DetectionParameters) -> None:
+    """Raises BadParameterError where one object alone is asked for and cannot be told from others."""
+    if parameters.instance_picture and parameters.back_end != LEARNED:
         raise BadParameterError(
-            f"instance_picture is for the back end 'learned'; {parameters.back_end!r} cannot tell two "
+            f"instance_picture is for the back end {LEARNED!r}; {parameters.back_end!r} cannot tell two "
             "objects of a class apart"
         )
 

@@ -9,14 +9,14 @@ import numpy as np
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Detections, VisibleObjects
-from robustnav_nodes.detection.back_ends import make_detector, make_instance, refuse_instance
+from robustnav_nodes.detection.back_ends import check_instance, make_detector, make_instance
 from robustnav_nodes.detection.boxes import Boxes
 from robustnav_nodes.detection.dials import dials_by_class
 from robustnav_nodes.detection.drawing import draw_boxes
 from robustnav_nodes.detection.image_complaints import check_registered, color_complaint, depth_complaint
 from robustnav_nodes.detection.latest_images import ImageParts, LatestImages
 from robustnav_nodes.detection.pace import Pace
-from robustnav_nodes.detection.parameters import TRUTH, DetectionParameters
+from robustnav_nodes.detection.parameters import OF_THE_MAKING, TRUTH, DetectionParameters
 from robustnav_nodes.detection.placement import depths_m, place_boxes
 from robustnav_nodes.detection.truth_detector import TruthDetector
 from robustnav_nodes.graph.node import GraphNode
@@ -50,7 +50,13 @@ class _Looker:
         self._instance = make_instance(parameters, self._detector)
         self.labels = self._detector.labels
 
+    @property
+    def told(self) -> str:
+        """Which one object is meant; '': any."""
+        return "" if self._instance is None else self._instance.told
+
     def look(self, waiting: _Waiting, parameters: DetectionParameters) -> Boxes:
+        """The boxes that are sure enough and, of the class of the one object that is meant, like it."""
         image, boxes = waiting.image, self._detector.detect(waiting.color).above(parameters.score_min)
         if self._instance is None:
             return boxes
@@ -75,10 +81,9 @@ class Detection(GraphNode[DetectionParameters]):
     declaration = DetectionParameters
 
     def configure(self) -> None:
-        """Open the topics. Raises BadParameterError where truth is asked for one object alone."""
+        """Open the topics. Raises BadParameterError where the back end cannot tell one object from others."""
         self._by_truth = self.parameters.back_end == TRUTH
-        if self._by_truth:
-            refuse_instance(self.parameters)
+        check_instance(self.parameters)
         self._configured = self.parameters
         self._images = LatestImages(self.parameters.image_wait, by_color=not self._by_truth)
         self._poses = PoseHistory()
@@ -117,12 +122,14 @@ class Detection(GraphNode[DetectionParameters]):
         """Turn the dials while it runs."""
         if self._labels and self._by_truth:
             self._make_truth()
-        if self.parameters.back_end != self._configured.back_end:
-            self.health.problem(
-                "parameter back_end",
-                f"{self.parameters.back_end!r} is used from the next time that the node is configured; "
-                f"until then {self._configured.back_end!r} looks",
-            )
+        for name in OF_THE_MAKING:
+            now, then = getattr(self.parameters, name), getattr(self._configured, name)
+            if now != then:
+                self.health.problem(
+                    f"parameter {name}",
+                    f"{now!r} is used from the next time that the node is configured; "
+                    f"until then it is {then!r}",
+                )
 
     def _on_camera(self, camera: CameraModel) -> None:
         self._camera = camera
@@ -148,6 +155,9 @@ class Detection(GraphNode[DetectionParameters]):
 
     def _on_looker(self, looker: _Looker) -> None:
         self._looker, self._labels = looker, looker.labels
+        if looker.told:
+            self.get_logger().info(f"one object is meant: {looker.told}")
+            self.health.figure("the one object that is meant", looker.told)
         self._names.publish(wire.labels_to_message(looker.labels))
         self._look_on()
 

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 from robustnav_msgs_py.parameters import parameter
 
-TRUTH = "truth"
-BACK_ENDS = (TRUTH, "learned", "onnx", "open_vocabulary")
+TRUTH, LEARNED = "truth", "learned"
+BACK_ENDS = (TRUTH, LEARNED, "onnx", "open_vocabulary")
+# What a back end is made from: a change takes the node's configuring.
+OF_THE_MAKING = ("back_end", "instance_picture", "instance_class", "instance_height_m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -46,7 +46,10 @@ def place_boxes(
 def depths_m(
     boxes: Boxes, depth: DepthImage, camera: CameraModel, parameters: DetectionParameters
 ) -> Float64:
-    """How far ahead the middle of each box's object is, [n] (m), as `place_boxes` says; NaN: not known."""
+    """How far ahead the middle of each box's object is, [n] (m), as `place_boxes` says; NaN: not known.
+
+    Raises BadMessageError where the depth image is not of the camera's size.
+    """
     height, width = depth.depth_m.shape
     if (width, height) != (camera.width, camera.height):
         raise BadMessageError(

@@ -1,6 +1,7 @@
 """The thesis' panoramic encoder: pictures around each viewpoint through CLIP (ViT-B/16), from a folder."""
 
 import hashlib
+import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from robustnav_nodes.instruction.trajectory import Trajectory
 Picture = NDArray[np.uint8]
 _ERROR_LENGTH = 200
 _DIGEST_DIGITS = 12
+# What says where and by which version a model was saved, not what it computes.
+_OF_THE_FILE = ("_name_or_path", "name_or_path", "transformers_version")
 
 
 class ClipEncoder:
@@ -52,11 +55,11 @@ class ClipEncoder:
         self._model = model.float().eval()
         self._pictures_of = pictures_of
         self._known = {"": np.zeros(self.width, dtype=np.float32)}
-        self._name = f"clip {_digest(self._model)}"
+        self._name = f"clip {_digest(self._model, self._processor)}"
 
     @property
     def name(self) -> str:
-        """Tells one CLIP from another by a digest of its weights."""
+        """Tells one CLIP from another by a digest of its weights and settings, and those of its pictures."""
         return self._name
 
     @property
@@ -86,8 +89,11 @@ class ClipEncoder:
         return embedding
 
 
-def _digest(model: Any) -> str:
+def _digest(model: Any, processor: Any) -> str:
     found = hashlib.sha256()
+    for settings in (model.config.to_dict(), processor.to_dict()):
+        kept = {name: value for name, value in settings.items() if name not in _OF_THE_FILE}
+        found.update(json.dumps(kept, sort_keys=True, default=str).encode())
     for name, weights in sorted(model.state_dict().items()):
         found.update(name.encode())
         found.update(weights.contiguous().numpy().data)

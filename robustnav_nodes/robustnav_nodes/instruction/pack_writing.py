@@ -27,7 +27,11 @@ class PackWriter:
 
     def __init__(self, folder: Path) -> None:
         self._target = folder.resolve()
-        if self._target.exists() and not (self._target.is_dir() and not any(self._target.iterdir())):
+        if os.path.ismount(self._target):
+            raise BadFileError(
+                f"{str(folder)!r} is a mounted disk, onto which no folder can be moved: name one in it"
+            )
+        if self._target.exists() and not self._is_empty():
             holds = "a pack" if (self._target / "meta.json").exists() else "something"
             raise BadFileError(f"{str(folder)!r} holds {holds} already; name another folder, or remove it")
         self.folder = self._target.with_name(f".{self._target.name}.{os.getpid()}.part")
@@ -74,6 +78,12 @@ class PackWriter:
         lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows]
         self._write(name, gzip.compress("".join(lines).encode(), mtime=_NO_TIME))
         return len(lines)
+
+    def _is_empty(self) -> bool:
+        try:
+            return self._target.is_dir() and not any(self._target.iterdir())
+        except OSError as error:
+            raise BadFileError(f"cannot read the folder {str(self._target)!r}: {error.strerror}") from error
 
     def _sums(self) -> None:
         lines = [

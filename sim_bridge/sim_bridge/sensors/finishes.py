@@ -11,9 +11,9 @@ class Finish:
 
     gloss: how bright the highlight of the lamp is; sharpness: it is the cosine to the power of 2 ** this.
     mirror: the share of light from the surroundings that it throws back when seen from straight ahead
-    (towards the rim it is more: Schlick's approximation of Fresnel's law); tinted: it colours what it
-    mirrors, as metals do. through: the share of its colour that it owes to what is behind it (glass), or to
-    what it is under its stain, dye or print (wood, leather, paper): `beneath_rgb`, in 0..1.
+    (towards the rim it is more: Schlick's approximation of Fresnel's law); tinted: it colours all that it
+    mirrors, as metals nearly do. through: the share of its colour that it owes to what is behind it (glass),
+    or to what it is under its stain, dye or print (wood, leather, paper): `beneath_rgb`, in 0..1.
     """
 
     gloss: float = 0.0
@@ -25,7 +25,7 @@ class Finish:
 
 
 MATT = Finish()
-FINISHES = {
+FINISHES: dict[Substance, Finish] = {
     Substance.METAL: Finish(gloss=0.45, sharpness=4, mirror=0.60, tinted=True),
     Substance.GLASS: Finish(
         gloss=0.70, sharpness=7, mirror=0.08, through=0.45, beneath_rgb=(0.76, 0.83, 0.81)

@@ -49,6 +49,7 @@ DOT_RADIUS = 0.30
 AMBIENT, LAMP, FILL = 0.46, 0.50, 0.16
 LAMP_REACH_M = 5.0
 FILL_DIRECTION = (0.48, 0.64, 0.60)
+FILL_LEVEL = math.hypot(FILL_DIRECTION[0], FILL_DIRECTION[1])
 WARM_RGB = (1.03, 1.0, 0.94)
 # What shines mirrors a room like any other: dark floor, light walls, bright ceiling, windows on two sides.
 FLOOR, HORIZON, CEILING, WINDOW = 0.20, 0.50, 1.05, 0.80
@@ -243,10 +244,10 @@ def albedo(
 
 
 @compiled_loosely
-def _surroundings(up: float, aside: float) -> float:
+def _surroundings(up: float, to_window: float) -> float:
     """How bright a room is in a direction, given its cosines to straight up and to where a window is."""
     sky = HORIZON + up * (CEILING - HORIZON if up > 0.0 else HORIZON - FLOOR)
-    window = aside
+    window = to_window
     for _ in range(WINDOW_SHARPNESS):
         window *= window
     return sky + WINDOW * window
@@ -397,8 +398,8 @@ def paint(mesh: Mesh, view: View, samples: Samples, shares: Float32) -> NDArray[
                         2.0 * facing * ny - ey * away,
                         2.0 * facing * nz - ez * away,
                     )
-                    aside = (rx * fill[0] + ry * fill[1]) / math.sqrt(fill[0] * fill[0] + fill[1] * fill[1])
-                    mirrored = share * shares[v, u] * _surroundings(rz, aside)
+                    to_window = (rx * fill[0] + ry * fill[1]) / FILL_LEVEL
+                    mirrored = share * shares[v, u] * _surroundings(rz, to_window)
                     light *= 1.0 - share
             # A metal mirrors in its own colour, all else as it is.
             light += tint * mirrored

@@ -1,5 +1,6 @@
 """The pictures show what their table says, and the same plan gives the same pictures."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,24 @@ def test_the_same_plan_gives_the_same_pictures(tmp_path: Path, kind: Kind) -> No
     first, second = (render_pictures(plan, tmp_path / name, 1) for name in ("first", "second"))
     assert np.array_equal(first.pixels, second.pixels)
     assert np.array_equal(first.objects.box_px, second.objects.box_px)
+
+
+def test_pictures_of_another_plan_or_look_are_refused(tmp_path: Path) -> None:
+    plan = RenderPlan(kind=Kind.TEST, first_seed=90_300, homes=1, per_home=2)
+    folder = tmp_path / "pictures"
+    first = render_pictures(plan, folder, 1)
+    assert np.array_equal(render_pictures(plan, folder, 1).pixels, first.pixels)
+    for other in (
+        replace(plan, first_seed=90_301),
+        replace(plan, homes=2),
+        replace(plan, kind=Kind.TRAINING),
+    ):
+        with pytest.raises(BadFileError, match="as they are rendered now; remove the folder"):
+            render_pictures(other, folder, 1)
+    pixels = np.load(folder / PIXELS_FILE)
+    np.save(folder / PIXELS_FILE, 255 - pixels)
+    with pytest.raises(BadFileError, match="remove the folder"):
+        render_pictures(plan, folder, 1)
 
 
 def test_look_alikes_are_what_the_pictures_look_at(tmp_path: Path) -> None:

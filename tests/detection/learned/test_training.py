@@ -117,6 +117,7 @@ def test_a_training_may_be_given_more_minutes_but_not_another_seed(untrained: We
     assert str(plan) == str(replace(plan, minutes=2.0))
     assert str(plan) != str(replace(plan, seed=2))
     assert str(plan) != str(replace(plan, begin_with=None))
+    assert str(plan) != str(replace(plan, networks=("look",), anew=True))
 
 
 def test_an_earlier_training_is_not_overwritten_unasked(tmp_path: Path) -> None:

@@ -68,7 +68,18 @@ def test_an_image_without_boxes_is_none(untrained: Weights) -> None:
 def test_where_nothing_of_the_class_is_found_the_picture_is_the_object(untrained: Weights) -> None:
     wanted = WantedInstance(LearnedDetector(untrained), picture(RED, 30, 50), label="book")
     assert wanted.label == BOOK
-    assert wanted.box_px.tolist() == [0.0, 0.0, 50.0, 30.0]
+    assert wanted.told == "the book in the picture, all of it"
+
+
+def test_a_finer_picture_shows_the_same_object() -> None:
+    wanted = WantedInstance(LearnedDetector(load_weights()), picture(RED), label="mug")
+    image, boxes = shelf()
+    fine = ColorImage(pixels=image.pixels.repeat(4, axis=0).repeat(4, axis=1), stamp_ns=0, frame_id="camera")
+    fine_boxes = Boxes(box_px=4.0 * boxes.box_px, score=boxes.score, label=boxes.label)
+    for likeness_min in np.linspace(0.8, 1.0, 9):
+        kept = wanted.kept(image, boxes, UNKNOWN, float(likeness_min))
+        fine_kept = wanted.kept(fine, fine_boxes, UNKNOWN, float(likeness_min) - 0.01)
+        assert set(kept.label.tolist()) <= set(fine_kept.label.tolist())
 
 
 def test_which_object_is_meant_must_be_clear(untrained: Weights) -> None:
@@ -93,7 +104,7 @@ def test_the_colours_of_a_picture_are_kept(tmp_path: Path) -> None:
 
 
 def test_parameters_ask_for_it(tmp_path: Path) -> None:
-    cv2.imwrite(str(tmp_path / "red.png"), picture(RED).pixels)
+    cv2.imwrite(str(tmp_path / "red.png"), cv2.cvtColor(picture(RED).pixels, cv2.COLOR_RGB2BGR))
     parameters = build(DetectionParameters, {"back_end": "learned"})
     detector = make_detector(parameters)
     assert make_instance(parameters, detector) is None

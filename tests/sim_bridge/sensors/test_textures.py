@@ -8,6 +8,7 @@ import pytest
 
 from sim_bridge.homes.materials import COLOURS, Material, Pattern, Substance
 from sim_bridge.homes.objects.catalogue import CLASSES
+from sim_bridge.homes.objects.object_class import ObjectClass
 from sim_bridge.homes.shapes import Part, ball, box, cylinder
 from sim_bridge.sensors.camera import camera_model, look_at
 from sim_bridge.sensors.scenery import PATTERN_CODE, SUBSTANCE_CODE, Item, Scenery, second_colour
@@ -136,13 +137,14 @@ def test_faces_of_one_material_differ() -> None:
     assert np.ptp(levels[levels != sum(BACKGROUND_RGB)]) > 15
 
 
-def test_no_two_substances_of_a_class_look_the_same() -> None:
-    """At a distance of 2 m and 320 x 240, where every grain has faded."""
-    shown = {}
-    for substance in {substance for item in CLASSES for substance in item.looks.substances}:
-        part = cylinder((0.0, 0.0, 0.0), 0.10, 0.25, Material(substance=substance, colour="blue"))
-        shown[substance] = picture_of(part, distance_m=2.0, width=180).astype(float)
-    for item in CLASSES:
+@pytest.mark.parametrize("item", CLASSES, ids=lambda item: item.label)
+def test_no_two_substances_of_a_class_look_the_same(item: ObjectClass) -> None:
+    """At a distance of 2 m and 320 x 240, where most grain has faded."""
+    for colour in item.looks.colours:
+        shown = {}
+        for substance in item.looks.substances:
+            part = cylinder((0.0, 0.0, 0.0), 0.10, 0.25, Material(substance=substance, colour=colour))
+            shown[substance] = picture_of(part, distance_m=2.0, width=180).astype(float)
         for first, second in combinations(item.looks.substances, 2):
             apart = np.abs(shown[first] - shown[second]).max(axis=2)
-            assert (apart > 4.0).sum() > 20, (item.label, first, second)
+            assert apart[apart > 0.0].mean() > 2.0, (colour, first, second)

@@ -59,7 +59,11 @@ class LearnedDetector:
         if metres_per_px is None:
             metres_per_px = np.full(count, np.nan, dtype=np.float32)
         pixels = np.ascontiguousarray(image.pixels)
-        size = torch.from_numpy(extents(box_px, metres_per_px, *pixels.shape[:2]))
+        # Sides count in pixels of an image as large as those that it was trained on.
+        rows, columns = pixels.shape[:2]
+        scale = np.float32(LONG_SIDE_PX / max(rows, columns))
+        sides = extents(box_px * scale, metres_per_px / scale, round(rows * scale), round(columns * scale))
+        size = torch.from_numpy(sides)
         with torch.inference_mode():
             pieces = patches(pixels[None], [0] * count, box_px)
             both = torch.cat([pieces, pieces.flip(3)]).contiguous(memory_format=torch.channels_last)

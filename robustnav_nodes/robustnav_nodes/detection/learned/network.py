@@ -16,8 +16,8 @@ BOX_UNIT_PX, MAX_LOG_SIDE = 8.0, 4.0
 P_BEFORE_LEARNING = 0.01
 EMBEDDING = 64
 PATCH_PX = 48
-# The look network's features are an eighth of a piece on a side; so many numbers are kept of each place.
-PLACES, LAYOUT = (PATCH_PX // 8) ** 2, 12
+# The look network's last features lie on a grid of so many cells; of each, so many numbers are kept.
+LAYOUT_CELLS, LAYOUT_CHANNELS = (PATCH_PX // 8) ** 2, 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,8 +75,8 @@ class DetectorNetwork(nn.Module):
 class LookNetwork(nn.Module):
     """Pieces of images, PATCH_PX on a side, to unit vectors: near each other where the looks are alike.
 
-    How large what they show is goes in, too (`extents`): a small mug looks like a large one afar. A box is
-    seldom exact; where in its piece the object ends, the layout of the features tells.
+    How large what they show is goes in, too (`extents`): a small mug looks like a large one afar. Boxes are
+    seldom exact, so it also keeps, in `layout`, what is where in the piece: there the object ends.
     """
 
     def __init__(self) -> None:
@@ -90,7 +90,11 @@ class LookNetwork(nn.Module):
             _convolution(96, 128),
         )
         self.layout = nn.Sequential(
-            nn.Conv2d(128, LAYOUT, 1), nn.ReLU(), nn.Flatten(), nn.Linear(LAYOUT * PLACES, 64), nn.ReLU()
+            nn.Conv2d(128, LAYOUT_CHANNELS, 1),
+            nn.ReLU(),
+            nn.Flatten(),
+            nn.Linear(LAYOUT_CHANNELS * LAYOUT_CELLS, 64),
+            nn.ReLU(),
         )
         self.size = nn.Sequential(nn.Linear(EXTENTS, 32), nn.ReLU())
         self.both = nn.Sequential(nn.Linear(256 + 64 + 32, 192), nn.ReLU())

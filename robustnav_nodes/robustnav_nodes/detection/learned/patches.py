@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from robustnav_msgs_py.values import Float32
 from robustnav_nodes.detection.learned.network import PATCH_PX
 
-# A piece reaches this much beyond the box.
+# A piece's sides are this many times those of its box.
 AROUND = 1.3
 # So much finer than needed it is cut at first, so that what is large does not lose its pattern.
 FINER = 2

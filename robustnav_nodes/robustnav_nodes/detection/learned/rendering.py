@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from multiprocessing import get_context
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robustnav_msgs_py.errors import BadSceneError
+from robustnav_msgs_py.errors import BadFileError, BadSceneError
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
 from robustnav_msgs_py.values import Pose2D, Velocity
 from robustnav_nodes.detection.learned.training_pictures import (
@@ -45,6 +46,8 @@ RING_M = 0.15
 # Of what shows fewer pixels nothing is said.
 FEWEST_PX = 12
 AIM_WIDTH, AIM_HEIGHT = 80, 60
+# Another processor rounds otherwise: pictures are the same where nearly all levels differ by no more.
+SAME_LEVELS, SAME_SHARE = 2, 0.001
 # Part of the homes is seen through another camera on another mast.
 P_OTHER_CAMERA = 0.35
 P_DEGRADED = 0.35
@@ -77,7 +80,8 @@ def render_pictures(
 ) -> PictureSet:
     """Render into `folder` with `workers` processes (1: in this one); `advanced` is called after each home.
 
-    A folder that is complete is only read.
+    A folder that is complete is only read. Raises BadFileError where it is of another plan, or of homes that
+    looked otherwise: the first of them is rendered again and compared.
     """
     from sim_bridge.homes.objects.catalogue import LABELS
 
@@ -92,7 +96,26 @@ def render_pictures(
                 tables.append(table)
                 advanced()
         save_objects(folder, ObjectTable.joined(tables), LABELS)
-    return load_pictures(folder)
+        return load_pictures(folder)
+    pictures = load_pictures(folder)
+    if len(pictures) != plan.homes * plan.per_home or not _is_of(plan, pictures):
+        raise BadFileError(
+            f"the pictures in {str(folder)!r} are not those of {plan.homes} homes of the seeds from "
+            f"{plan.first_seed} on, {plan.per_home} of each, as they are rendered now; remove the folder"
+        )
+    return pictures
+
+
+def _is_of(plan: RenderPlan, pictures: PictureSet) -> bool:
+    """Whether the first home's pictures are what they would be now."""
+    shape = (plan.per_home, HEIGHT, WIDTH, 3)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / PIXELS_FILE
+        np.lib.format.open_memmap(path, mode="w+", dtype=np.uint8, shape=shape).flush()
+        _render_home((plan, path, 0))
+        again = np.array(np.load(path, mmap_mode="r"), dtype=np.int16)
+    apart = np.abs(again - pictures.pixels[: plan.per_home])
+    return bool((apart > SAME_LEVELS).mean() < SAME_SHARE)
 
 
 def _render_home(job: tuple[RenderPlan, Path, int]) -> ObjectTable:

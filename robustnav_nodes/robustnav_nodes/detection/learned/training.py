@@ -37,7 +37,7 @@ class TrainingPlan:
     """What to train and how long: `minutes` in all, rendering included; `seed` decides all that is random.
 
     `begin_with`: weights to go on from instead of from nothing; a network that is not among `networks` stays
-    as it is there. `rate`: of the usual learning rate.
+    as it is there, and with `anew` those that are begin from nothing. `rate`: of the usual learning rate.
     """
 
     minutes: float
@@ -46,13 +46,15 @@ class TrainingPlan:
     per_home: int = PICTURES_PER_HOME
     networks: tuple[str, ...] = NETWORKS
     begin_with: Weights | None = None
+    anew: bool = False
     rate: float = 1.0
 
     def __str__(self) -> str:
         """All but the minutes: a training that was stopped may be given more of them."""
         first = "nothing" if self.begin_with is None else f"weights {digest_of(self.begin_with)[:12]}"
         pictures = f"{self.homes} homes of {self.per_home} pictures"
-        return f"from {first}, {pictures}, seed {self.seed}, rate {self.rate:g}"
+        anew = f", {' and '.join(self.networks)} anew" if self.anew else ""
+        return f"from {first}{anew}, {pictures}, seed {self.seed}, rate {self.rate:g}"
 
 
 def train_detector(
@@ -99,10 +101,12 @@ def train_detector(
     )
     left_s = max(LEARNING_MIN_S, plan.minutes * 60.0 - (clock() - began_s))
     widths = Widths()
-    weights = plan.begin_with or Weights(
+    fresh = Weights(
         labels=LABELS, widths=widths, detector=DetectorNetwork(len(LABELS), widths), look=LookNetwork()
     )
-    networks: dict[str, nn.Module] = {"detector": weights.detector, "look": weights.look}
+    weights = plan.begin_with or fresh
+    begun = fresh if plan.anew else weights
+    networks: dict[str, nn.Module] = {"detector": begun.detector, "look": begun.look}
     make_loss: dict[str, MakeLoss] = {
         "detector": DetectionLoss(pictures=folder, seed=plan.seed),
         "look": LookLoss(pictures=folder),
