@@ -4,8 +4,6 @@ import sys
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
 from robustnav_msgs_py import conversions as wire
 from robustnav_msgs_py.pose_history import PoseHistory
 from robustnav_msgs_py.values import CameraModel, ColorImage, DepthImage, Detections, VisibleObjects
@@ -17,7 +15,7 @@ from robustnav_nodes.detection.image_complaints import check_registered, color_c
 from robustnav_nodes.detection.latest_images import ImageParts, LatestImages
 from robustnav_nodes.detection.pace import Pace
 from robustnav_nodes.detection.parameters import OF_THE_MAKING, TRUTH, DetectionParameters
-from robustnav_nodes.detection.placement import depths_m, place_boxes
+from robustnav_nodes.detection.placement import heights_m, place_boxes
 from robustnav_nodes.detection.truth_detector import TruthDetector
 from robustnav_nodes.graph.node import GraphNode
 from robustnav_nodes.graph.spin import run_nodes
@@ -60,9 +58,8 @@ class _Looker:
         image, boxes = waiting.image, self._detector.detect(waiting.color).above(parameters.score_min)
         if self._instance is None:
             return boxes
-        z_m = depths_m(boxes, image.depth, image.camera, parameters)
-        heights_m = ((boxes.box_px[:, 3] - boxes.box_px[:, 1]) * z_m / image.camera.fy).astype(np.float32)
-        return self._instance.kept(waiting.color, boxes, heights_m, parameters.instance_likeness_min)
+        tall_m = heights_m(boxes, image.depth, image.camera, parameters)
+        return self._instance.kept(waiting.color, boxes, tall_m, parameters.instance_likeness_min)
 
 
 class Detection(GraphNode[DetectionParameters]):

@@ -27,7 +27,7 @@ def place_boxes(
     no place is better than a wrong one. Raises BadMessageError where the depth image is not of the camera's
     size.
     """
-    z_m = depths_m(boxes, depth, camera, parameters)
+    z_m = _depths_m(boxes, depth, camera, parameters)
     placed = np.isfinite(z_m)
     kept, z_m = boxes[placed], z_m[placed]
     u, v = (kept.box_px[:, :2] + kept.box_px[:, 2:]).T / 2.0
@@ -43,13 +43,21 @@ def place_boxes(
     return detections, len(boxes) - len(kept)
 
 
-def depths_m(
+def heights_m(
     boxes: Boxes, depth: DepthImage, camera: CameraModel, parameters: DetectionParameters
-) -> Float64:
-    """How far ahead the middle of each box's object is, [n] (m), as `place_boxes` says; NaN: not known.
+) -> Float32:
+    """How tall each box is at the depth of its object, float32 [n] (m), NaN where that is not known.
 
     Raises BadMessageError where the depth image is not of the camera's size.
     """
+    z_m = _depths_m(boxes, depth, camera, parameters)
+    return ((boxes.box_px[:, 3] - boxes.box_px[:, 1]) * z_m / camera.fy).astype(np.float32)
+
+
+def _depths_m(
+    boxes: Boxes, depth: DepthImage, camera: CameraModel, parameters: DetectionParameters
+) -> Float64:
+    """How far ahead the middle of each box's object is, [n] (m), as `place_boxes` says; NaN: not known."""
     height, width = depth.depth_m.shape
     if (width, height) != (camera.width, camera.height):
         raise BadMessageError(
