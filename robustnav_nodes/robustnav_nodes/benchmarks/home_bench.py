@@ -190,7 +190,7 @@ def home_rows(played: Sequence[HomeEpisode]) -> list[HomeRow]:
                 spl_ci=intervals[1],
                 wrong_stop=float(means[2]),
                 wrong_stop_ci=intervals[2],
-                not_found=float(1.0 - means[0] - means[2]),
+                not_found=max(0.0, float(1.0 - means[0] - means[2])),
                 false_alarms=float(means[3]),
                 false_alarms_ci=intervals[3],
                 steps=float(np.mean(steps)) if steps else None,

@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from robustnav_msgs_py.errors import BadParameterError
+from robustnav_nodes.planner.parameters import PlannerParameters
 
 if TYPE_CHECKING:
     from robustnav_nodes.benchmarks.home_bench import HomeEpisode, HomeRow
@@ -22,7 +23,9 @@ def homes_command(
     suite: Annotated[str, typer.Option(help="planners, degradations or statistics")] = "planners",
     episodes: Annotated[int, typer.Option(min=2, max=10_000, help="homes: easy, medium, easy ...")] = 30,
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="of the first home")] = UNSEEN_SEED,
-    max_steps: Annotated[int, typer.Option(min=1, help="after which a search has failed")] = 60,
+    max_steps: Annotated[
+        int, typer.Option(min=1, help="after which a search has failed; default: as the planner has it")
+    ] = PlannerParameters().max_steps,
     back_end: Annotated[str, typer.Option(help="of the detection node")] = "learned",
     model: Annotated[str, typer.Option(help="of the detection node; empty: what comes along")] = "",
     statistics: Annotated[
