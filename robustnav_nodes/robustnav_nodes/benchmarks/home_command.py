@@ -102,7 +102,7 @@ def _show(console: Console, rows: "Sequence[HomeRow]") -> None:
     names = ("planner", "camera", "statistics")
     varied = [name for name in names if len({getattr(row, name) for row in rows}) > 1]
     for name in varied:
-        table.add_column(name, no_wrap=True)
+        table.add_column(name)
     for name in ("n", "SR", "SPL", "wrong", "lost", "alarms", "steps", "gain"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
