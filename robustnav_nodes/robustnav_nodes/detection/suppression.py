@@ -1,7 +1,6 @@
 """Of boxes that show the same thing, the best one stays: non-maximum suppression within each class."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robustnav_nodes.detection.boxes import Boxes
 
@@ -28,5 +27,4 @@ def suppress(boxes: Boxes, iou_max: float) -> Boxes:
         shared = np.prod(np.maximum(high - low, 0.0), axis=1)
         union = area[best] + area - shared
         stays &= (label != label[best]) | (shared <= iou_max * union)
-    chosen: NDArray[np.intp] = order[kept]
-    return Boxes(box_px=boxes.box_px[chosen], score=boxes.score[chosen], label=boxes.label[chosen])
+    return boxes[order[kept]]

@@ -102,7 +102,7 @@ class PackWriter:
         """Remove what was not moved, and the folders that were made for it."""
         shutil.rmtree(self.folder, ignore_errors=True)
         for parent in self._parents:
-            with contextlib.suppress(OSError):
+            with contextlib.suppress(OSError):  # one that holds something, as the moved pack, stays
                 parent.rmdir()
 
     def _write(self, name: str, content: bytes) -> None:

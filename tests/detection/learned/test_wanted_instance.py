@@ -72,14 +72,13 @@ def test_where_nothing_of_the_class_is_found_the_picture_is_the_object(untrained
 
 
 def test_a_finer_picture_shows_the_same_object() -> None:
-    wanted = WantedInstance(LearnedDetector(load_weights()), picture(RED), label="mug")
+    detector = LearnedDetector(load_weights())
     image, boxes = shelf()
     fine = ColorImage(pixels=image.pixels.repeat(4, axis=0).repeat(4, axis=1), stamp_ns=0, frame_id="camera")
-    fine_boxes = Boxes(box_px=4.0 * boxes.box_px, score=boxes.score, label=boxes.label)
-    for likeness_min in np.linspace(0.8, 1.0, 9):
-        kept = wanted.kept(image, boxes, UNKNOWN, float(likeness_min))
-        fine_kept = wanted.kept(fine, fine_boxes, UNKNOWN, float(likeness_min) - 0.01)
-        assert set(kept.label.tolist()) <= set(fine_kept.label.tolist())
+    metres_per_px = np.full(3, 0.005, dtype=np.float32)
+    looks = detector.embed(image, boxes.box_px, metres_per_px)
+    finer = detector.embed(fine, 4.0 * boxes.box_px, metres_per_px / 4.0)
+    assert ((looks * finer).sum(axis=1) > 0.99).all()
 
 
 def test_which_object_is_meant_must_be_clear(untrained: Weights) -> None:
