@@ -23,7 +23,8 @@ def generate_launch_description() -> LaunchDescription:
     """Arguments: simulation, record, seed, namespace, params_file."""
     simulation = LaunchConfiguration("simulation")
     namespace = LaunchConfiguration("namespace")
-    shared = {"namespace": namespace, "output": "screen", "respawn": True, "respawn_delay": 1.0}
+    # not sooner: see FIRST_BACK_OFF_S in robustnav_nodes/graph/processes.py
+    shared = {"namespace": namespace, "output": "screen", "respawn": True, "respawn_delay": 4.0}
     seed = {"seed": ParameterValue(LaunchConfiguration("seed"), value_type=int)}
     files = [LaunchConfiguration("params_file")]
     nodes = [

@@ -108,14 +108,16 @@ class RunningGraph:
         """Whether the search is over."""
         return self.search.phase in ENDED
 
-    def kill(self, executable: str) -> None:
-        """SIGKILL a node, and wait until it has come back."""
-        said = sum(f"{executable} is active" in line for line in self.lines)
-        os.kill(self.processes.pid(executable), signal.SIGKILL)
-        self.wait(
-            lambda: sum(f"{executable} is active" in line for line in self.lines) > said,
-            f"{executable} to come back",
-        )
+    def kill(self, *executables: str) -> None:
+        """SIGKILL nodes, and wait until they have come back."""
+        said = {name: self._times_active(name) for name in executables}
+        for name in executables:
+            os.kill(self.processes.pid(name), signal.SIGKILL)
+        for name in executables:
+            self.wait(lambda name=name: self._times_active(name) > said[name], f"{name} to come back")
+
+    def _times_active(self, executable: str) -> int:
+        return sum(f"{executable} is active" in line for line in self.lines)
 
 
 @contextmanager

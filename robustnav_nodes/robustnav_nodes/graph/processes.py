@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 
 from robustnav_nodes.graph.spin import PARENT_HOLDS_STDIN, WRONG_USAGE
 
-FIRST_BACK_OFF_S = 0.5
-LONGEST_BACK_OFF_S = 8.0
+# The others notice one to three seconds after a kill that the killed one's port in shared memory is dead. A new
+# process that takes the same port just then can lose it to a race in Fast DDS, and hears nothing ever after.
+FIRST_BACK_OFF_S = 4.0
+LONGEST_BACK_OFF_S = 16.0
 STEADY_AFTER_S = 30.0  # a process that has run this long has recovered: its next back-off is the first again
 STOP_TIMEOUT_S = 40.0  # longer than the recorder takes at most to close its bag
 STOPPED_FIRST = ("planner", "recorder")  # the robot stands; that goes into the bag; then the others
