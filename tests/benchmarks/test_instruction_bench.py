@@ -167,13 +167,18 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("torch")
     pytest.importorskip("sklearn")
     from robustnav_nodes.instruction.iedl_training import IedlSettings
-    from robustnav_nodes.instruction.mention_training import TreeSettings
+    from robustnav_nodes.instruction.mention_network import NetworkSettings
+    from robustnav_nodes.instruction.mention_training import MentionSettings, TreeSettings
     from robustnav_nodes.instruction.training import TrainingPlan, train_models
 
     out = tmp_path_factory.mktemp("model") / "model.npz"
     plan = TrainingPlan(
         data="small world",
-        trees=TreeSettings(iterations=10, least_in_leaf=5, ensembles=1, folds=2),
+        ours=MentionSettings(
+            trees=TreeSettings(iterations=10, least_in_leaf=5, ensembles=1),
+            network=NetworkSettings(width=16, epochs=2, batch=32),
+            folds=2,
+        ),
         iedl=IedlSettings(width=16, layers=1, epochs=1),
     )
     said = said_walks(homes=3, walks=3, seed=0)

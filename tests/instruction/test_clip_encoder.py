@@ -28,7 +28,8 @@ import transformers
 
 from robustnav_nodes.instruction.clip_encoder import ClipEncoder, Picture
 from robustnav_nodes.instruction.iedl_training import IedlSettings
-from robustnav_nodes.instruction.mention_training import TreeSettings
+from robustnav_nodes.instruction.mention_network import NetworkSettings
+from robustnav_nodes.instruction.mention_training import MentionSettings, TreeSettings
 from robustnav_nodes.instruction.model_file import load_model, save_model
 from robustnav_nodes.instruction.training import TrainingPlan, train_models
 
@@ -81,7 +82,11 @@ def trained(clip: Path, pack: Path, tmp_path_factory: pytest.TempPathFactory) ->
     ]
     plan = TrainingPlan(
         data="small world",
-        trees=TreeSettings(iterations=2, least_in_leaf=5, ensembles=1, folds=2),
+        ours=MentionSettings(
+            trees=TreeSettings(iterations=2, least_in_leaf=5, ensembles=1),
+            network=NetworkSettings(width=8, epochs=1, batch=32),
+            folds=2,
+        ),
         iedl=IedlSettings(width=16, layers=1, batch=16, epochs=2),
     )
     encoder = ClipEncoder(clip, PackImages(pack).at)

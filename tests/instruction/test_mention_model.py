@@ -22,9 +22,14 @@ pytest.importorskip("sklearn")
 
 
 def trained(*, homes: int, walks: int, protocols: tuple[Protocol, ...], iterations: int = 25) -> LearnedModel:
-    from robustnav_nodes.instruction.mention_training import TreeSettings, train_mentions
+    from robustnav_nodes.instruction.mention_network import NetworkSettings
+    from robustnav_nodes.instruction.mention_training import MentionSettings, TreeSettings, train_mentions
 
-    settings = TreeSettings(iterations=iterations, least_in_leaf=5, ensembles=1, folds=2, learning_rate=0.2)
+    settings = MentionSettings(
+        trees=TreeSettings(iterations=iterations, least_in_leaf=5, ensembles=1, learning_rate=0.2),
+        network=NetworkSettings(width=32, epochs=iterations // 2, batch=32),
+        folds=2,
+    )
     said = said_walks(homes=homes, walks=walks, seed=0)
     return train_mentions(said, anything_goes(), settings, seed=1, protocols=protocols, say=lambda _: None)
 
@@ -135,13 +140,13 @@ def place(number: int) -> Viewpoint:
 
 
 def test_one_home_is_too_few() -> None:
-    from robustnav_nodes.instruction.mention_training import TreeSettings, train_mentions
+    from robustnav_nodes.instruction.mention_training import MentionSettings, train_mentions
 
     with pytest.raises(BadParameterError, match="at least two are needed"):
         train_mentions(
             said_walks(homes=1, walks=2, seed=0),
             anything_goes(),
-            TreeSettings(),
+            MentionSettings(),
             seed=1,
             say=lambda _: None,
         )

@@ -12,6 +12,7 @@ from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.cli import app
 from robustnav_nodes.instruction.common_sense import anything_goes
 from robustnav_nodes.instruction.episodes import Instruction
+from robustnav_nodes.instruction.injection import Injector, error_episodes
 from robustnav_nodes.instruction.tokens import tokenized
 from tests.instruction.small_world import said_walks
 
@@ -19,14 +20,20 @@ pytest.importorskip("torch")
 pytest.importorskip("sklearn")
 
 from robustnav_nodes.instruction.iedl_training import IedlSettings
-from robustnav_nodes.instruction.mention_training import TreeSettings
+from robustnav_nodes.instruction.mention_data import training_episodes
+from robustnav_nodes.instruction.mention_network import NetworkSettings
+from robustnav_nodes.instruction.mention_training import MentionSettings, TreeSettings
 from robustnav_nodes.instruction.model_file import load_model
 from robustnav_nodes.instruction.training import TrainingPlan, digest_of, train_models
 
 SAID = said_walks(homes=3, walks=2, seed=0)
 PLAN = TrainingPlan(
     data="small world",
-    trees=TreeSettings(iterations=5, least_in_leaf=5, ensembles=1, folds=2),
+    ours=MentionSettings(
+        trees=TreeSettings(iterations=5, least_in_leaf=5, ensembles=1),
+        network=NetworkSettings(width=8, epochs=1, batch=32),
+        folds=2,
+    ),
     iedl=IedlSettings(width=16, layers=1, batch=16, epochs=3),
 )
 
@@ -64,10 +71,31 @@ def test_a_training_that_was_interrupted_is_taken_up(tmp_path: Path) -> None:
 
 def test_the_digest_is_of_all_that_is_learned_from() -> None:
     likely = anything_goes()
-    own = digest_of(SAID, likely)
-    assert own == digest_of(said_walks(homes=3, walks=2, seed=0), likely)
-    assert own != digest_of([replace(SAID[0], tokens=SAID[0].tokens[1:]), *SAID[1:]], likely)
-    assert own != digest_of(SAID, replace(likely, rooms={}))
+    own = digest_of(SAID, likely, {})
+    assert own == digest_of(said_walks(homes=3, walks=2, seed=0), likely, {})
+    assert own != digest_of([replace(SAID[0], tokens=SAID[0].tokens[1:]), *SAID[1:]], likely, {})
+    assert own != digest_of(SAID, replace(likely, rooms={}), {})
+    injector = Injector(common_sense=likely)
+    errors = list(error_episodes(SAID, "direction", injector, seed=1))
+    assert own != digest_of(SAID, likely, {"uniform": errors})
+    assert digest_of(SAID, likely, {"matched": errors}) != digest_of(SAID, likely, {"uniform": errors})
+
+
+def test_errors_that_the_data_hold_are_learned_from_too(tmp_path: Path) -> None:
+    injector = Injector(common_sense=anything_goes())
+    errors = list(error_episodes(SAID, "room", injector, seed=5))
+    own = list(training_episodes(SAID, lambda _: injector, 1, PLAN.seed))
+    said: list[str] = []
+    train_models(
+        SAID,
+        anything_goes(),
+        replace(PLAN, iedl=None),
+        tmp_path / "m.npz",
+        resume=False,
+        say=said.append,
+        errors={"uniform": errors},
+    )
+    assert f"uniform: {len(own) + len(errors)} episodes, half of them with errors" in said
 
 
 def test_words_of_which_none_can_be_wrong_are_too_few(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from robustnav_nodes.benchmarks.generated_instructions import (
@@ -13,7 +13,8 @@ from robustnav_nodes.benchmarks.generated_instructions import (
 from robustnav_nodes.benchmarks.instruction_bench import chosen_pairs
 from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
-from robustnav_nodes.instruction.injection import Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.mention_data import Errors
 from robustnav_nodes.instruction.pack_errors import TRAIN
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 from robustnav_nodes.instruction.wording import learn_wording
@@ -25,11 +26,12 @@ Episodes = dict[Protocol, dict[str, list[ErrorEpisode]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lessons:
-    """Clean instructions to learn from, what may be confused in them, and where they come from."""
+    """Instructions to learn from, what may be confused in them, errors that are there, and their origin."""
 
     instructions: Sequence[Instruction]
     common_sense: CommonSense
     name: str
+    errors: Errors = field(default_factory=dict)
 
 
 def lessons_of(
@@ -42,6 +44,11 @@ def lessons_of(
             instructions=pack.instructions(split),
             common_sense=pack.common_sense(),
             name=f"{data.name}, {split}",
+            errors={
+                protocol: [one for name in ERROR_TYPES for one in pack.episodes(split, protocol, name)]
+                for protocol in PROTOCOLS
+                if pack.has_episodes(split, protocol)
+            },
         )
     plan = GenerationPlan(seed=seed, homes=homes, unseen=0)
     instructions = list(generated_instructions(plan, TRAIN, _workers(), say))

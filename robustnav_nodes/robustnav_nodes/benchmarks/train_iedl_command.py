@@ -86,7 +86,14 @@ def train_iedl_command(
         iedl=IedlSettings(epochs=epochs, minutes=minutes, width=width) if epochs else None,
     )
     _, curve = train_models(
-        lessons.instructions, lessons.common_sense, plan, out, resume=resume, say=say, encoder=clip
+        lessons.instructions,
+        lessons.common_sense,
+        plan,
+        out,
+        resume=resume,
+        say=say,
+        errors=lessons.errors,
+        encoder=clip,
     )
     if curve:
         _save_curve(curve, out.with_suffix(".curve.json"))

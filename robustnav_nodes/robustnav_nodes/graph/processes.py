@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from robustnav_nodes.graph.spin import PARENT_HOLDS_STDIN, WRONG_USAGE
 
-# The others notice one to three seconds after a kill that the killed one's port in shared memory is dead. A new
-# process that takes the same port just then can lose it to a race in Fast DDS, and hears nothing ever after.
+# The others notice one to three seconds after a kill that the killed one's port in shared memory is dead. A
+# new process that takes the same port just then can lose it to a race in Fast DDS, and is deaf from then on.
 FIRST_BACK_OFF_S = 4.0
 LONGEST_BACK_OFF_S = 16.0
 STEADY_AFTER_S = 30.0  # a process that has run this long has recovered: its next back-off is the first again

@@ -1,6 +1,6 @@
 """What our model learns from: errors put into clean instructions, and every mention of them as a row."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,13 +10,14 @@ from robustnav_msgs_py.errors import BadParameterError
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
-from robustnav_nodes.instruction.injection import Injector, error_episodes
+from robustnav_nodes.instruction.injection import Injector, Protocol, error_episodes
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.rows import MentionRows, mention_rows
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
 from robustnav_nodes.instruction.scene import Scene, scene_of
 
 Say = Callable[[str], None]
+Errors = Mapping[Protocol, Sequence[ErrorEpisode]]
 _TOLD_EVERY = 20_000  # episodes
 
 
@@ -117,7 +118,7 @@ def part_of(rows: LearnedRows, episodes: NDArray[np.bool_]) -> LearnedRows:
     )
 
 
-def scenes_of(instructions: Sequence[Instruction]) -> dict[int, Scene]:
+def scenes_of(instructions: Iterable[Instruction | ErrorEpisode]) -> dict[int, Scene]:
     """By the identity of the trajectory, so that each is looked at once."""
     scenes: dict[int, Scene] = {}
     for one in instructions:

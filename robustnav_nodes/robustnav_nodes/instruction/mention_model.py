@@ -1,8 +1,8 @@
-"""Our model: every mention is judged by what was seen while it was being walked; the worst ones decide.
+"""Our model: every mention is judged by what was seen while it was being walked; one wrong one is enough.
 
-Boosted trees score each row of `mention_features`; an instruction is wrong where one of its mentions is
-(noisy-or), weighed so that the score can be read as a probability. A blind model is the same without all that
-was seen.
+Boosted trees and a small transformer score the rows of `mention_features`; the mean of their log odds counts.
+An instruction is wrong where one of its mentions is (noisy-or), on a scale that makes the score a
+probability. A blind model is the same without all that was seen.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,6 +17,7 @@ from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.rows import mention_rows
+from robustnav_nodes.instruction.mention_network import MentionNetwork
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
 from robustnav_nodes.instruction.scene import Scene, scene_of
 from robustnav_nodes.instruction.trajectory import Trajectory
@@ -28,42 +29,51 @@ MAX_PLACES = 60  # of a longer walk so many, evenly spread, are looked at
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scorer:
-    """Trees by kind of mention; `head` maps an episode's summary to log odds; blind ones see wording only."""
+    """Trees by kind of mention, and one network for all; blind ones see wording only.
+
+    `calibration` [offset, factor] makes the log odds of an instruction those of a probability.
+    """
 
     trees: Mapping[str, tuple[Trees, ...]]
-    head: Float64
+    network: MentionNetwork
+    calibration: Float64
     blind: bool
 
     def mention_odds(self, rows: NDArray[np.float32], kinds: Sequence[str], blind_columns: int) -> Float64:
-        """Log odds that each mention is wrong."""
-        odds = np.zeros(len(kinds))
+        """Log odds that each mention of one instruction is wrong."""
         seen = rows[:, :blind_columns] if self.blind else rows
-        for kind in KINDS:
-            of_kind = np.array([k == kind for k in kinds], dtype=bool)
-            if of_kind.any():
-                odds[of_kind] = mean_log_odds(self.trees[kind], seen[of_kind])
+        if not len(seen):
+            return np.zeros(0)
+        odds: Float64 = (odds_of_trees(self.trees, seen, kinds) + self.network.log_odds(seen)) / 2.0
         return odds
 
-    def error_odds(self, odds: Float64, kinds: Sequence[str]) -> float:
+    def error_odds(self, odds: Float64) -> float:
         """Log odds that the instruction is wrong, from those of its mentions."""
-        return float(episode_summary(odds, kinds) @ self.head)
+        offset, factor = self.calibration
+        return float(offset + factor * noisy_or(odds))
 
 
-SUMMARY = 8
+def odds_of_trees(
+    trees: Mapping[str, tuple[Trees, ...]], rows: NDArray[np.float32], kinds: Sequence[str]
+) -> Float64:
+    """Log odds of each row by the trees for its kind of mention."""
+    odds = np.zeros(len(kinds))
+    for kind in KINDS:
+        of_kind = np.array([k == kind for k in kinds], dtype=bool)
+        if of_kind.any():
+            odds[of_kind] = mean_log_odds(trees[kind], rows[of_kind])
+    return odds
 
 
-def episode_summary(odds: Float64, kinds: Sequence[str]) -> Float64:
-    """[1, noisy-or log odds, the three highest log odds, the highest of each kind]."""
-    found = np.full(SUMMARY, -6.0)
-    found[0] = 1.0
-    if len(odds):
-        right = float(np.minimum(-np.logaddexp(0.0, odds).sum(), -1e-9))  # log P(no mention is wrong)
-        found[1] = np.log(-np.expm1(right)) - right
-        top = np.sort(odds)[::-1][:3]
-        found[2 : 2 + len(top)] = np.maximum(top, -6.0)
-        for k, kind in enumerate(KINDS):
-            found[5 + k] = max([float(o) for o, own in zip(odds, kinds, strict=True) if own == kind] + [-6.0])
-    return found
+_SURELY_RIGHT = -9.0  # log odds of an instruction in which nothing can be wrong
+
+
+def noisy_or(odds: Float64) -> float:
+    """Log odds that at least one is wrong, of mentions of which each is so with its own log odds."""
+    if not len(odds):
+        return _SURELY_RIGHT
+    none = min(-float(np.logaddexp(0.0, odds).sum()), -1e-9)  # log P(no mention is wrong)
+    return max(float(np.log(-np.expm1(none)) - none), _SURELY_RIGHT)
 
 
 class MentionModel:
@@ -78,10 +88,9 @@ class MentionModel:
     def judge(self, trajectory: Trajectory, tokens: Sequence[str]) -> Verdict:
         mentions = find_mentions(tokens)
         odds = self.mention_odds(trajectory, tokens, mentions)
-        kinds = [mention.kind for mention in mentions]
         order = np.argsort(-odds, kind="stable")
         return Verdict(
-            error_score=float(1.0 / (1.0 + np.exp(-self._scorer.error_odds(odds, kinds)))),
+            error_score=float(1.0 / (1.0 + np.exp(-self._scorer.error_odds(odds)))),
             doubts=tuple((mentions[k].start, float(1.0 / (1.0 + np.exp(-odds[k])))) for k in order),
         )
 

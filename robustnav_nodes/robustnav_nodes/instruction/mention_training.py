@@ -1,13 +1,15 @@
-"""How our model is learned from clean instructions, the walks they were written for, and nothing else.
+"""How our model is learned from instructions and the walks they were written for.
 
-Errors are put in anew for training (`injection`). The place model and the wording that describe a home are
-always learned without it, in folds over homes: trees that saw their rows on homes known by heart would trust
-them too much.
+Errors are put in anew for training (`injection`), besides those that the data hold. The place model and the
+wording that describe a home are always learned without it, in folds over homes: trees that saw their rows on
+homes known by heart would trust them too much.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,7 @@ from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.episodes import Instruction
 from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol
 from robustnav_nodes.instruction.mention_data import (
+    Errors,
     LearnedRows,
     Say,
     part_of,
@@ -28,7 +31,8 @@ from robustnav_nodes.instruction.mention_data import (
 )
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import replacements_of
-from robustnav_nodes.instruction.mention_model import SUMMARY, Scorer, episode_summary
+from robustnav_nodes.instruction.mention_model import Scorer, noisy_or
+from robustnav_nodes.instruction.mention_network import NetworkSettings
 from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel
 from robustnav_nodes.instruction.place_model import SaidOnWalk, learn_places
@@ -51,6 +55,14 @@ class TreeSettings:
     features_at_a_split: float = 0.3
     clean_share: float = 0.5  # of the mentions that are right, so many are learned from
     ensembles: int = 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MentionSettings:
+    """How our model is learned."""
+
+    trees: TreeSettings = field(default_factory=TreeSettings)
+    network: NetworkSettings = field(default_factory=NetworkSettings)
     # matched errors are hard to find and, of most types, rare
     draws: Mapping[Protocol, int] = field(default_factory=lambda: {"uniform": 1, "matched": 2})
     folds: int = 4
@@ -103,6 +115,7 @@ def learn_trees(
 
     _require_both(rows.wrong[rows.kind == KINDS.index(kind)], f"{kind} words")
     found = []
+    rarer = math.log(settings.clean_share)  # right ones are than in what the trees saw
     for number in range(settings.ensembles):
         rng = np.random.default_rng([seed, number])
         kept = (rows.kind == KINDS.index(kind)) & (
@@ -120,7 +133,8 @@ def learn_trees(
             early_stopping=False,
             random_state=seed + number,
         )
-        found.append(trees_of(classifier.fit(x, rows.wrong[kept])))
+        trees = trees_of(classifier.fit(x, rows.wrong[kept]))
+        found.append(replace(trees, base=trees.base + rarer))
     return tuple(found)
 
 
@@ -133,64 +147,68 @@ def _require_both(wrong: NDArray[np.int64], what: str) -> None:
         )
 
 
-def learn_head(odds: Float64, rows: LearnedRows) -> Float64:
-    """Logistic regression of the label on the episodes' summaries; `odds` of trees that did not see them."""
+def learn_calibration(odds: Float64, rows: LearnedRows) -> Float64:
+    """Logistic regression of the label on the instructions' log odds, by a model that saw none of them."""
     from sklearn.linear_model import LogisticRegression
 
     _require_both(rows.label, "instructions, in the homes that are left out to calibrate,")
+    of_instruction = np.array([[noisy_or(odds[part])] for part in _parts(rows)])
+    regression = LogisticRegression(max_iter=500).fit(of_instruction, rows.label)
+    return np.array([regression.intercept_[0], regression.coef_[0, 0]])
+
+
+def _parts(rows: LearnedRows) -> list[slice]:
+    """Where the rows of each instruction stand."""
     starts = np.searchsorted(rows.episode, np.arange(len(rows.label) + 1))
-    summary = np.zeros((len(rows.label), SUMMARY))
-    names = np.array(KINDS)
-    for number in range(len(rows.label)):
-        part = slice(starts[number], starts[number + 1])
-        summary[number] = episode_summary(odds[part], list(names[rows.kind[part]]))
-    regression = LogisticRegression(C=1.0, fit_intercept=False, max_iter=500)
-    head: Float64 = regression.fit(summary, rows.label).coef_[0]
-    return head
-
-
-def odds_of(scorer_trees: dict[str, tuple[Trees, ...]], rows: LearnedRows, *, blind: bool) -> Float64:
-    """Log odds of all rows."""
-    scorer = Scorer(trees=scorer_trees, head=np.zeros(SUMMARY), blind=blind)
-    return scorer.mention_odds(rows.values, [KINDS[k] for k in rows.kind], rows.blind)
+    return [slice(*ends) for ends in pairwise(starts.tolist())]
 
 
 def learn_scorer(
     rows: LearnedRows,
     calibrating: NDArray[np.bool_],
-    settings: TreeSettings,
+    settings: MentionSettings,
     *,
     blind: bool,
     seed: int,
     say: Say,
 ) -> Scorer:
-    """Trees, and the head that makes a probability of them, from homes that the trees did not see.
+    """Trees and network, and what makes a probability of them, from homes that these did not see.
 
     `calibrating` bool [episodes] marks the latter.
     """
+    from robustnav_nodes.instruction.mention_network_training import learn_network
+
     seen, unseen = part_of(rows, ~calibrating), part_of(rows, calibrating)
+    word = "blind " if blind else ""
     trees = {}
     for kind in KINDS:
-        trees[kind] = learn_trees(seen, kind, settings, blind=blind, seed=seed)
-        say(f"{'blind trees' if blind else 'trees'} for {kind} words are learned")
-    head = learn_head(odds_of(trees, unseen, blind=blind), unseen)
-    return Scorer(trees=trees, head=head, blind=blind)
+        trees[kind] = learn_trees(seen, kind, settings.trees, blind=blind, seed=seed)
+        say(f"{word}trees for {kind} words are learned")
+    network = learn_network(seen, settings.network, blind=blind, seed=seed)
+    say(f"the {word}network is learned")
+    scorer = Scorer(trees=trees, network=network, calibration=np.array([0.0, 1.0]), blind=blind)
+    kinds = [KINDS[k] for k in unseen.kind]
+    odds = [scorer.mention_odds(unseen.values[part], kinds[part], unseen.blind) for part in _parts(unseen)]
+    return replace(scorer, calibration=learn_calibration(np.concatenate(odds), unseen))
 
 
 def train_mentions(
     instructions: Sequence[Instruction],
     common_sense: CommonSense,
-    settings: TreeSettings,
+    settings: MentionSettings,
     *,
     seed: int,
+    errors: Errors | None = None,
     protocols: Sequence[Protocol] = PROTOCOLS,
     say: Say,
 ) -> LearnedModel:
     """Learn our model from clean instructions of several homes; the same seed, the same model.
 
-    Raises BadParameterError for a single home.
+    Errors are put in anew; `errors`, in instructions of the same homes, come on top. Raises
+    BadParameterError for a single home.
     """
-    scenes = scenes_of(instructions)
+    errors = errors or {}
+    scenes = scenes_of((*instructions, *(one for some in errors.values() for one in some)))
     fold_of = fold_of_groups([one.group for one in instructions], settings.folds, seed)
     by_fold = {
         fold: learn_knowledge(
@@ -208,7 +226,8 @@ def train_mentions(
     for protocol in protocols:
         injector = partial(_injector, protocol, common_sense, knowledge_of)
         episodes = list(training_episodes(instructions, injector, settings.draws[protocol], seed))
-        say(f"{protocol}: put errors into {len(episodes) // 2} of {len(episodes)} episodes")
+        episodes += errors.get(protocol, ())
+        say(f"{protocol}: {len(episodes)} episodes, half of them with errors")
         rows = rows_of(episodes, scenes, knowledge_of, say)
         names = rows.names
         calibrating = np.array([fold_of[one.group] == 0 for one in episodes])
@@ -226,7 +245,7 @@ def train_mentions(
             "instructions": len(instructions),
             "seed": seed,
             "protocols": list(protocols),
-            "trees": asdict(settings),
+            "settings": asdict(settings),
         },
     )
 

@@ -20,7 +20,8 @@ from robustnav_nodes.instruction.concepts import CONCEPTS, KINDS
 from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
-from robustnav_nodes.instruction.mention_model import SUMMARY, MentionModel, Scorer
+from robustnav_nodes.instruction.mention_model import MentionModel, Scorer
+from robustnav_nodes.instruction.mention_network import network_from_arrays
 from robustnav_nodes.instruction.panorama import SEMANTIC, PanoramicEncoder, SemanticEncoder
 from robustnav_nodes.instruction.place_model import PlaceModel
 from robustnav_nodes.instruction.side_model import FEATURES as SIDE_FEATURES
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_model import IedlModel
 
 SHIPPED = Path(__file__).with_name("weights.npz")
-FORMAT = 2
+FORMAT = 3
 _PLACES = ("mean", "scale", "hidden", "out", "log_share", "climbs")
 
 
@@ -90,7 +91,8 @@ def save_model(path: Path, model: LearnedModel) -> None:
     scorers = []
     for (protocol, blind), scorer in model.scorers.items():
         name = f"{protocol}/{'blind' if blind else 'seeing'}"
-        arrays[f"{name}/head"] = scorer.head
+        arrays[f"{name}/calibration"] = scorer.calibration
+        arrays.update(scorer.network.arrays(f"{name}/network"))
         for kind in KINDS:
             for number, trees in enumerate(scorer.trees[kind]):
                 arrays.update(trees.arrays(f"{name}/{kind}/{number}"))
@@ -150,7 +152,8 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
                 )
                 for kind in KINDS
             },
-            head=_shaped(arrays[f"{name}/head"], (SUMMARY,)),
+            network=network_from_arrays(arrays, f"{name}/network", features),
+            calibration=_shaped(arrays[f"{name}/calibration"], (2,)),
             blind=bool(row["blind"]),
         )
     words = [str(word) for word in arrays["words"]]

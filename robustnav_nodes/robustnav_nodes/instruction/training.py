@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.instruction.common_sense import CommonSense
 from robustnav_nodes.instruction.episodes import Instruction
-from robustnav_nodes.instruction.mention_data import Say
-from robustnav_nodes.instruction.mention_training import TreeSettings, fold_of_groups, train_mentions
+from robustnav_nodes.instruction.mention_data import Errors, Say
+from robustnav_nodes.instruction.mention_training import MentionSettings, fold_of_groups, train_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel, load_model, save_model
 from robustnav_nodes.instruction.panorama import PanoramicEncoder, SemanticEncoder
 
@@ -28,7 +28,7 @@ class TrainingPlan:
 
     data: str
     seed: int = 1
-    trees: TreeSettings = field(default_factory=TreeSettings)
+    ours: MentionSettings = field(default_factory=MentionSettings)
     iedl: "IedlSettings | None" = None  # None: not IEDL
 
 
@@ -40,16 +40,19 @@ def train_models(
     *,
     resume: bool,
     say: Say,
+    errors: Errors | None = None,
     encoder: PanoramicEncoder | None = None,
 ) -> "tuple[LearnedModel, list[EpochFigures]]":
     """Train, and write `out`; the model and IEDL's curve. IEDL sees by `encoder` (None: the semantic one).
+
+    Ours learns from `errors` too, those that the data hold.
 
     Raises BadParameterError where there is nothing to learn from, BadFileError where a file cannot be written
     or what is to be taken up belongs to another training.
     """
     if not instructions:
         raise BadParameterError("there is no instruction to learn from")
-    digest = digest_of(instructions, common_sense)
+    digest = digest_of(instructions, common_sense, errors or {})
     kept, checkpoint = out.with_name(f"{out.stem}.mentions.npz"), out.with_name(f"{out.stem}.iedl")
     if not resume:
         kept.unlink(missing_ok=True)
@@ -58,7 +61,7 @@ def train_models(
         model = _taken_up(kept, plan, digest)
         say(f"took up {kept}")
     else:
-        model = train_mentions(instructions, common_sense, plan.trees, seed=plan.seed, say=say)
+        model = train_mentions(instructions, common_sense, plan.ours, seed=plan.seed, errors=errors, say=say)
         model = replace(model, card={**model.card, "data": plan.data, "digest": digest})
         save_model(kept, model)
     curve: list[EpochFigures] = []
@@ -72,8 +75,8 @@ def train_models(
     return model, curve
 
 
-def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense) -> str:
-    """SHA-256 of all that is learned from: words, walks, and what may be confused."""
+def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense, errors: Errors) -> str:
+    """SHA-256 of all that is learned from: words, walks, errors, and what may be confused."""
     found = hashlib.sha256()
     walks: dict[int, bytes] = {}
     for one in instructions:
@@ -81,6 +84,9 @@ def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense) ->
         if key not in walks:
             walks[key] = hashlib.sha256(repr(one.trajectory).encode()).digest()
         found.update(repr((one.key, one.group, one.tokens)).encode() + walks[key])
+    for protocol, episodes in sorted(errors.items()):
+        for episode in episodes:
+            found.update(repr((protocol, episode.key, episode.group, episode.tokens, episode.wrong)).encode())
     for likely in (common_sense.rooms, common_sense.objects):
         found.update(repr(sorted((name, tuple(others)) for name, others in likely.items())).encode())
     return found.hexdigest()
@@ -92,7 +98,7 @@ def _taken_up(kept: Path, plan: TrainingPlan, digest: str) -> LearnedModel:
         "data": plan.data,
         "seed": plan.seed,
         "digest": digest,
-        "trees": asdict(plan.trees),
+        "settings": asdict(plan.ours),
     }
     for name, value in wanted.items():
         if model.card.get(name) != value:
