@@ -11,6 +11,8 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+from robustnav_nodes.graph.processes import FIRST_BACK_OFF_S
+
 ALWAYS = (
     ("robustnav_nodes", "detection"),
     ("robustnav_nodes", "belief"),
@@ -23,8 +25,12 @@ def generate_launch_description() -> LaunchDescription:
     """Arguments: simulation, record, seed, namespace, params_file."""
     simulation = LaunchConfiguration("simulation")
     namespace = LaunchConfiguration("namespace")
-    # not sooner: see FIRST_BACK_OFF_S in robustnav_nodes/graph/processes.py
-    shared = {"namespace": namespace, "output": "screen", "respawn": True, "respawn_delay": 4.0}
+    shared = {
+        "namespace": namespace,
+        "output": "screen",
+        "respawn": True,
+        "respawn_delay": FIRST_BACK_OFF_S,
+    }
     seed = {"seed": ParameterValue(LaunchConfiguration("seed"), value_type=int)}
     files = [LaunchConfiguration("params_file")]
     nodes = [

@@ -10,6 +10,7 @@ from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.instruction.common_sense import anything_goes
 from robustnav_nodes.instruction.episodes import ErrorEpisode
 from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.mention_model import SURELY_RIGHT, noisy_or
 from robustnav_nodes.instruction.metrics import auc
 from robustnav_nodes.instruction.model_file import SHIPPED, LearnedModel, load_model, save_model
 from robustnav_nodes.instruction.tokens import tokenized
@@ -102,6 +103,26 @@ def test_an_unfinished_walk_is_judged_as_far_as_it_goes(learned: LearnedModel) -
     ]
     assert all(0.0 <= score <= 1.0 for score in scores)
     assert scores[-1] == model.judge(one.trajectory, one.tokens).error_score
+
+
+def test_an_instruction_is_wrong_where_one_of_its_mentions_is() -> None:
+    def odds(probability: float) -> float:
+        return float(np.log(probability / (1.0 - probability)))
+
+    assert noisy_or(np.array([0.7])) == pytest.approx(0.7)
+    assert noisy_or(np.array([odds(0.5), odds(0.2)])) == pytest.approx(odds(0.6))
+    assert noisy_or(np.zeros(0)) == noisy_or(np.full(3, -80.0)) == SURELY_RIGHT
+    assert np.isfinite(noisy_or(np.array([900.0, -900.0])))
+
+
+def test_what_tells_nothing_is_not_turned_around() -> None:
+    from robustnav_nodes.instruction.mention_training import UNCALIBRATED, learn_calibration
+
+    label = np.array([0, 1] * 20)
+    offset, factor = learn_calibration(np.where(label, 3.0, 1.0), label)
+    assert factor > 0.0
+    assert offset + 2.0 * factor == pytest.approx(0.0, abs=0.01)
+    np.testing.assert_array_equal(learn_calibration(np.where(label, -1.0, 1.0), label), UNCALIBRATED)
 
 
 TEXTS = {

@@ -76,26 +76,48 @@ def test_the_digest_is_of_all_that_is_learned_from() -> None:
     assert own != digest_of([replace(SAID[0], tokens=SAID[0].tokens[1:]), *SAID[1:]], likely, {})
     assert own != digest_of(SAID, replace(likely, rooms={}), {})
     injector = Injector(common_sense=likely)
-    errors = list(error_episodes(SAID, "direction", injector, seed=1))
+    errors = list(error_episodes(SAID, "direction", injector, 1))
     assert own != digest_of(SAID, likely, {"uniform": errors})
     assert digest_of(SAID, likely, {"matched": errors}) != digest_of(SAID, likely, {"uniform": errors})
 
 
 def test_errors_that_the_data_hold_are_learned_from_too(tmp_path: Path) -> None:
     injector = Injector(common_sense=anything_goes())
-    errors = list(error_episodes(SAID, "room", injector, seed=5))
+    errors = list(error_episodes(SAID, "room", injector, 5))
     own = list(training_episodes(SAID, lambda _: injector, 1, PLAN.seed))
     said: list[str] = []
-    train_models(
+    plan = replace(PLAN, iedl=None)
+    model, _ = train_models(
         SAID,
         anything_goes(),
-        replace(PLAN, iedl=None),
+        plan,
         tmp_path / "m.npz",
         resume=False,
         say=said.append,
         errors={"uniform": errors},
     )
-    assert f"uniform: {len(own) + len(errors)} episodes, half of them with errors" in said
+    count = len(own) + len(errors)
+    assert f"uniform: {count} episodes, {count // 2} of them with errors" in said
+    assert model.card["errors_given"] == {"uniform": len(errors), "matched": 0}
+    strange = [replace(errors[0], group="elsewhere")]
+    with pytest.raises(BadParameterError, match="in 'elsewhere', of which there is no instruction"):
+        train_models(
+            SAID,
+            anything_goes(),
+            plan,
+            tmp_path / "m.npz",
+            resume=False,
+            say=said.append,
+            errors={"matched": strange},
+        )
+
+
+def test_a_pack_of_the_same_seed_holds_other_errors() -> None:
+    injector = Injector(common_sense=anything_goes())
+    told = said_walks(homes=3, walks=6, seed=0)
+    drawn = {one.tokens for one in training_episodes(told, lambda _: injector, 2, 1) if one.wrong}
+    packed = [one.tokens for one in error_episodes(told, "all", injector, 1) if one.wrong]
+    assert sum(tokens in drawn for tokens in packed) < len(packed) / 2
 
 
 def test_words_of_which_none_can_be_wrong_are_too_few(tmp_path: Path) -> None:

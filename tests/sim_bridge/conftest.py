@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sim_bridge.simulation import Simulation
 
 # Of each difficulty so many homes, from the seeds 0, 1, ...
-HOMES = {Difficulty.EASY: 12, Difficulty.MEDIUM: 12, Difficulty.HARD: 6}
+HOMES = {Difficulty.EASY: 6, Difficulty.MEDIUM: 8, Difficulty.HARD: 3}
 # Homes, maps and driving are tested without PyBullet, all but the node without ROS.
 collect_ignore = [] if find_spec("rclpy") else ["test_node.py"]
 if not find_spec("pybullet"):

@@ -100,14 +100,14 @@ class Injector:
 
 
 def error_episodes(
-    instructions: Iterable[Instruction], error_type: str, injector: Injector, seed: int
+    instructions: Iterable[Instruction], error_type: str, injector: Injector, *seeds: int
 ) -> Iterator[ErrorEpisode]:
-    """Clean and perturbed episodes in pairs, so that half hold an error; the seed and the key decide each."""
+    """Clean and perturbed episodes in pairs, half with an error; the seeds and the key decide each."""
     for instruction in instructions:
         if len(instruction.tokens) < MIN_TOKENS:
             continue
         number = [ord(letter) for letter in f"{error_type}/{instruction.key}"]
-        found = injector.perturbed(instruction.tokens, error_type, np.random.default_rng([seed, *number]))
+        found = injector.perturbed(instruction.tokens, error_type, np.random.default_rng([*seeds, *number]))
         if found is None:
             continue
         said, spans = found

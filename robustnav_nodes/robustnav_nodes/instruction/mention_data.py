@@ -33,16 +33,24 @@ class LearnedRows:
     names: tuple[str, ...]  # of the columns of `values`
     blind: int
 
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """int64 [episodes + 1]: where the rows of each episode begin, and where the last ends."""
+        return np.searchsorted(self.episode, np.arange(len(self.label) + 1))
+
 
 def training_episodes(
     instructions: Sequence[Instruction], injector_of: Callable[[str], Injector], draws: int, seed: int
 ) -> Iterator[ErrorEpisode]:
-    """Every instruction clean and with each type of error, drawn `draws` times; an injector for each home."""
+    """Every instruction clean and with each type of error, drawn `draws` times; an injector for each home.
+
+    A pack that was made with the same seed holds other errors.
+    """
     for number in range(draws):
         for one in instructions:
             injector = injector_of(one.group)
             for error_type in ERROR_TYPES:
-                yield from error_episodes([one], error_type, injector, seed + number)
+                yield from error_episodes([one], error_type, injector, seed, number)
 
 
 def rows_of(

@@ -24,6 +24,7 @@ from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.trees import Trees, mean_log_odds
 from robustnav_nodes.instruction.verdict import Verdict
 
+SURELY_RIGHT = -9.0  # log odds of an instruction in which nothing can be wrong
 MAX_PLACES = 60  # of a longer walk so many, evenly spread, are looked at
 
 
@@ -65,15 +66,10 @@ def odds_of_trees(
     return odds
 
 
-_SURELY_RIGHT = -9.0  # log odds of an instruction in which nothing can be wrong
-
-
 def noisy_or(odds: Float64) -> float:
     """Log odds that at least one is wrong, of mentions of which each is so with its own log odds."""
-    if not len(odds):
-        return _SURELY_RIGHT
-    none = min(-float(np.logaddexp(0.0, odds).sum()), -1e-9)  # log P(no mention is wrong)
-    return max(float(np.log(-np.expm1(none)) - none), _SURELY_RIGHT)
+    none = -float(np.logaddexp(0.0, odds).sum())  # log P(no mention is wrong)
+    return max(float(np.log(-np.expm1(none)) - none), SURELY_RIGHT) if none else SURELY_RIGHT
 
 
 class MentionModel:

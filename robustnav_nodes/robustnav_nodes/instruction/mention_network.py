@@ -133,22 +133,55 @@ class MentionNetwork:
 
 
 def network_from_arrays(arrays: Mapping[str, NDArray[Any]], name: str, features: int) -> MentionNetwork:
-    """What `arrays` wrote. Raises BadFileError where something is missing or does not fit together."""
+    """What `arrays` wrote, for rows of so many features. Raises BadFileError where it is something else."""
     own = {
         part.removeprefix(f"{name}/"): array for part, array in arrays.items() if part.startswith(f"{name}/")
     }
+    broken = f"the network {name!r} of the model does not hold together"
     try:
         parts: dict[str, Any] = {part: own.pop(part).astype(np.int64) for part in _POSITIONS}
         parts |= {part: own.pop(part).astype(np.float32) for part in _SCALES}
-        scale = RowScale(**parts)
-        network = MentionNetwork(
-            scale=scale, weights={part: array.astype(np.float32) for part, array in own.items()}
-        )
-        odds = network.log_odds(np.zeros((2, features), dtype=np.float32))
-    except (KeyError, ValueError, IndexError) as error:
-        raise BadFileError(
-            f"the network {name!r} of the model does not hold together ({error}): train it anew"
-        ) from error
-    if not np.isfinite(odds).all():
-        raise BadFileError(f"the network {name!r} of the model holds no numbers: train it anew")
-    return network
+        weights = {part: array.astype(np.float32) for part, array in own.items()}
+        width = len(weights["norm.weight"])
+        numbers = len(parts["numbers"])
+        shapes = _shapes(numbers + len(parts["missing"]), width)
+        tables = [f"tables.{k}.weight" for k in range(len(CATEGORIES))]
+        shapes |= {table: (len(weights[table]), width) for table in tables}
+        shapes |= dict.fromkeys(_SCALES, (numbers,)) | {"categories": (len(CATEGORIES),)}
+    except (KeyError, ValueError, TypeError) as error:
+        raise BadFileError(f"{broken} ({error}): train it anew") from error
+    every = weights | parts
+    wrong = [part for part, shape in shapes.items() if part not in every or every[part].shape != shape]
+    wrong += [part for part, array in every.items() if not np.isfinite(array).all()]
+    wrong += [part for part in weights if part not in shapes]
+    limits = {"numbers": features, "categories": features, "missing": numbers}
+    wrong += [part for part, end in limits.items() if ((parts[part] < 0) | (parts[part] >= end)).any()]
+    if wrong or width % HEADS or not all(len(weights[table]) for table in tables):
+        raise BadFileError(f"{broken} ({', '.join(wrong) or 'its size'}): train it anew")
+    return MentionNetwork(scale=RowScale(**parts), weights=weights)
+
+
+def _shapes(inputs: int, width: int) -> dict[str, tuple[int, ...]]:
+    """Of the weights, but for the tables of the categories."""
+    shapes: dict[str, tuple[int, ...]] = {}
+
+    def linear(name: str, out: int, into: int) -> None:
+        shapes[f"{name}.weight"], shapes[f"{name}.bias"] = (out, into), (out,)
+
+    def norm(name: str) -> None:
+        shapes[f"{name}.weight"] = shapes[f"{name}.bias"] = (width,)
+
+    linear("numbers", width, inputs)
+    for k in range(LAYERS):
+        layer = f"layers.layers.{k}"
+        shapes[f"{layer}.self_attn.in_proj_weight"] = (3 * width, width)
+        shapes[f"{layer}.self_attn.in_proj_bias"] = (3 * width,)
+        linear(f"{layer}.self_attn.out_proj", width, width)
+        linear(f"{layer}.linear1", 2 * width, width)
+        linear(f"{layer}.linear2", width, 2 * width)
+        norm(f"{layer}.norm1")
+        norm(f"{layer}.norm2")
+    norm("norm")
+    linear("inner", width, width)
+    linear("out", 1, width)
+    return shapes

@@ -18,7 +18,7 @@ from robustnav_nodes.instruction.small_network import teach
 _SCALE_ROWS = 150_000  # so many tell the scale of all
 
 
-class _Network(nn.Module):  # type: ignore[misc, unused-ignore]
+class Network(nn.Module):  # type: ignore[misc, unused-ignore]
     """Numbers float [B, M, K], categories int64 [B, M, C] and `absent` bool [B, M] to log odds [B, M]."""
 
     def __init__(self, numbers: int, tables: list[int], settings: NetworkSettings) -> None:
@@ -55,13 +55,13 @@ def learn_network(rows: LearnedRows, settings: NetworkSettings, *, blind: bool, 
     scale = row_scale(rows.values[some, :features], rows.names[:features])
     tables = (rows.values[:, scale.categories].max(axis=0).astype(int) + 2).tolist()
     torch.manual_seed(seed)
-    network = _Network(len(scale.numbers) + len(scale.missing), tables, settings)
-    starts = np.searchsorted(rows.episode, np.arange(len(rows.label) + 1))
+    network = Network(len(scale.numbers) + len(scale.missing), tables, settings)
+    starts = rows.starts
     told = np.flatnonzero(np.diff(starts))  # instructions that mention anything
     wrong = rows.wrong.astype(np.float32)
 
-    def loss_of(some: Tensor) -> Tensor:
-        at, absent = _padded(starts, told[some.numpy()])
+    def loss_of(batch: Tensor) -> Tensor:
+        at, absent = padded(starts, told[batch.numpy()])
         numbers, categories = scale.inputs(rows.values[at, :features])
         odds = network(torch.from_numpy(numbers), torch.from_numpy(categories), torch.from_numpy(absent))
         kept = torch.from_numpy(~absent)
@@ -79,10 +79,15 @@ def learn_network(rows: LearnedRows, settings: NetworkSettings, *, blind: bool, 
         lengths=np.diff(starts)[told],
     )
     weights = {name: value.detach().numpy().copy() for name, value in network.state_dict().items()}
+    for k, column in enumerate(scale.categories):
+        # what was never seen says nothing: its row is 0, and so is one for all beyond the table
+        table = weights[f"tables.{k}.weight"]
+        table[np.setdiff1d(np.arange(len(table)), rows.values[:, column].astype(int) + 1)] = 0.0
+        weights[f"tables.{k}.weight"] = np.concatenate([table, np.zeros((1, settings.width), np.float32)])
     return MentionNetwork(scale=scale, weights=weights)
 
 
-def _padded(
+def padded(
     starts: NDArray[np.int64], episodes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """The rows of some episodes, int64 [B, M], and where there is none (row 0 stands there), bool [B, M]."""

@@ -41,6 +41,7 @@ from robustnav_nodes.instruction.surprise import learn_surprise
 from robustnav_nodes.instruction.trees import Trees, trees_of
 from robustnav_nodes.instruction.wording import learn_wording
 
+UNCALIBRATED = np.array([0.0, 1.0])
 _HOMES_TO_CALIBRATE = 12  # one in so many
 
 
@@ -115,7 +116,7 @@ def learn_trees(
 
     _require_both(rows.wrong[rows.kind == KINDS.index(kind)], f"{kind} words")
     found = []
-    rarer = math.log(settings.clean_share)  # right ones are than in what the trees saw
+    shift = math.log(settings.clean_share)  # only this share of the right ones was seen
     for number in range(settings.ensembles):
         rng = np.random.default_rng([seed, number])
         kept = (rows.kind == KINDS.index(kind)) & (
@@ -134,7 +135,7 @@ def learn_trees(
             random_state=seed + number,
         )
         trees = trees_of(classifier.fit(x, rows.wrong[kept]))
-        found.append(replace(trees, base=trees.base + rarer))
+        found.append(replace(trees, base=trees.base + shift))
     return tuple(found)
 
 
@@ -147,38 +148,25 @@ def _require_both(wrong: NDArray[np.int64], what: str) -> None:
         )
 
 
-def learn_calibration(odds: Float64, rows: LearnedRows) -> Float64:
-    """Logistic regression of the label on the instructions' log odds, by a model that saw none of them."""
+def learn_calibration(log_odds: Float64, label: NDArray[np.int64]) -> Float64:
+    """[offset, factor] that make a probability of instructions' log odds, by a model that saw none of them.
+
+    Where the odds tell nothing, no factor above 0 fits, and they stay as they are.
+    """
     from sklearn.linear_model import LogisticRegression
 
-    _require_both(rows.label, "instructions, in the homes that are left out to calibrate,")
-    of_instruction = np.array([[noisy_or(odds[part])] for part in _parts(rows)])
-    regression = LogisticRegression(max_iter=500).fit(of_instruction, rows.label)
-    return np.array([regression.intercept_[0], regression.coef_[0, 0]])
-
-
-def _parts(rows: LearnedRows) -> list[slice]:
-    """Where the rows of each instruction stand."""
-    starts = np.searchsorted(rows.episode, np.arange(len(rows.label) + 1))
-    return [slice(*ends) for ends in pairwise(starts.tolist())]
+    regression = LogisticRegression(max_iter=500).fit(log_odds[:, None], label)
+    found = np.array([regression.intercept_[0], regression.coef_[0, 0]])
+    return found if found[1] > 0.0 else UNCALIBRATED
 
 
 def learn_scorer(
-    rows: LearnedRows,
-    calibrating: NDArray[np.bool_],
-    settings: MentionSettings,
-    *,
-    blind: bool,
-    seed: int,
-    say: Say,
+    seen: LearnedRows, unseen: LearnedRows, settings: MentionSettings, *, blind: bool, seed: int, say: Say
 ) -> Scorer:
-    """Trees and network, and what makes a probability of them, from homes that these did not see.
-
-    `calibrating` bool [episodes] marks the latter.
-    """
+    """Trees and network from `seen`; what makes a probability of them from homes that these did not see."""
     from robustnav_nodes.instruction.mention_network_training import learn_network
 
-    seen, unseen = part_of(rows, ~calibrating), part_of(rows, calibrating)
+    _require_both(unseen.label, "instructions, in the homes that are left out to calibrate,")
     word = "blind " if blind else ""
     trees = {}
     for kind in KINDS:
@@ -186,10 +174,11 @@ def learn_scorer(
         say(f"{word}trees for {kind} words are learned")
     network = learn_network(seen, settings.network, blind=blind, seed=seed)
     say(f"the {word}network is learned")
-    scorer = Scorer(trees=trees, network=network, calibration=np.array([0.0, 1.0]), blind=blind)
+    scorer = Scorer(trees=trees, network=network, calibration=UNCALIBRATED, blind=blind)
     kinds = [KINDS[k] for k in unseen.kind]
-    odds = [scorer.mention_odds(unseen.values[part], kinds[part], unseen.blind) for part in _parts(unseen)]
-    return replace(scorer, calibration=learn_calibration(np.concatenate(odds), unseen))
+    parts = [slice(*ends) for ends in pairwise(unseen.starts.tolist())]
+    odds = [noisy_or(scorer.mention_odds(unseen.values[part], kinds[part], unseen.blind)) for part in parts]
+    return replace(scorer, calibration=learn_calibration(np.array(odds), unseen.label))
 
 
 def train_mentions(
@@ -205,11 +194,15 @@ def train_mentions(
     """Learn our model from clean instructions of several homes; the same seed, the same model.
 
     Errors are put in anew; `errors`, in instructions of the same homes, come on top. Raises
-    BadParameterError for a single home.
+    BadParameterError for a single home, and for errors in another one.
     """
     errors = errors or {}
-    scenes = scenes_of((*instructions, *(one for some in errors.values() for one in some)))
     fold_of = fold_of_groups([one.group for one in instructions], settings.folds, seed)
+    given = [one for episodes in errors.values() for one in episodes]
+    for one in given:
+        if one.group not in fold_of:
+            raise BadParameterError(f"errors are given in {one.group!r}, of which there is no instruction")
+    scenes = scenes_of((*instructions, *given))
     by_fold = {
         fold: learn_knowledge(
             [one for one in instructions if fold_of[one.group] != fold], scenes, common_sense, seed
@@ -227,14 +220,14 @@ def train_mentions(
         injector = partial(_injector, protocol, common_sense, knowledge_of)
         episodes = list(training_episodes(instructions, injector, settings.draws[protocol], seed))
         episodes += errors.get(protocol, ())
-        say(f"{protocol}: {len(episodes)} episodes, half of them with errors")
+        wrong = sum(one.label for one in episodes)
+        say(f"{protocol}: {len(episodes)} episodes, {wrong} of them with errors")
         rows = rows_of(episodes, scenes, knowledge_of, say)
         names = rows.names
         calibrating = np.array([fold_of[one.group] == 0 for one in episodes])
+        seen, unseen = part_of(rows, ~calibrating), part_of(rows, calibrating)
         for blind in (False, True):
-            scorers[protocol, blind] = learn_scorer(
-                rows, calibrating, settings, blind=blind, seed=seed, say=say
-            )
+            scorers[protocol, blind] = learn_scorer(seen, unseen, settings, blind=blind, seed=seed, say=say)
     return LearnedModel(
         knowledge=learn_knowledge(instructions, scenes, common_sense, seed),
         features=names,
@@ -245,6 +238,7 @@ def train_mentions(
             "instructions": len(instructions),
             "seed": seed,
             "protocols": list(protocols),
+            "errors_given": {protocol: len(errors.get(protocol, ())) for protocol in protocols},
             "settings": asdict(settings),
         },
     )

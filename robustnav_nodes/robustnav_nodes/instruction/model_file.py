@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import CONCEPTS, KINDS
 from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
@@ -43,7 +44,7 @@ class LearnedModel:
     """What was learned, by (protocol, blind), and where from: data, seed, settings, figures at training."""
 
     knowledge: Knowledge
-    features: tuple[str, ...]  # names of the columns that the trees were learned from
+    features: tuple[str, ...]  # names of the columns that it was learned from
     scorers: Mapping[tuple[Protocol, bool], Scorer]
     surprise: Surprise
     card: Mapping[str, Any]
@@ -153,7 +154,7 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
                 for kind in KINDS
             },
             network=network_from_arrays(arrays, f"{name}/network", features),
-            calibration=_shaped(arrays[f"{name}/calibration"], (2,)),
+            calibration=_calibration(arrays[f"{name}/calibration"]),
             blind=bool(row["blind"]),
         )
     words = [str(word) for word in arrays["words"]]
@@ -191,6 +192,13 @@ def _other_encoder(trained: str, given: str) -> str:
     if trained == SEMANTIC:
         return f"this IEDL looks at no pictures, and {given} was given: leave out --clip-folder"
     return f"this IEDL was trained with {trained}, and --clip-folder holds {given}: name the former's folder"
+
+
+def _calibration(array: NDArray[Any]) -> Float64:
+    found = _shaped(array, (2,)).astype(np.float64)
+    if not np.isfinite(found).all() or found[1] <= 0.0:
+        raise ValueError(f"no calibration is {found.tolist()}")
+    return found
 
 
 def _sides(arrays: Mapping[str, NDArray[Any]]) -> SideModel:

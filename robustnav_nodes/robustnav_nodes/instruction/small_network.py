@@ -36,7 +36,7 @@ def teach(
     order = torch.Generator().manual_seed(seed)
     network.train()
     for _ in range(epochs):
-        for some in _batches(rows, batch, lengths, order):
+        for some in batches(rows, batch, lengths, order):
             loss = loss_of(some)
             optimiser.zero_grad()
             loss.backward()
@@ -44,9 +44,10 @@ def teach(
             schedule.step()
 
 
-def _batches(
+def batches(
     rows: int, batch: int, lengths: NDArray[np.int64] | None, order: "torch.Generator"
 ) -> "list[torch.Tensor]":
+    """Numbers of all rows, in batches of at most `batch`, in an order that `order` draws."""
     import torch
 
     shuffled = torch.randperm(rows, generator=order)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.instruction.common_sense import CommonSense
-from robustnav_nodes.instruction.episodes import Instruction
+from robustnav_nodes.instruction.episodes import ErrorEpisode, Instruction
 from robustnav_nodes.instruction.mention_data import Errors, Say
 from robustnav_nodes.instruction.mention_training import MentionSettings, fold_of_groups, train_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel, load_model, save_model
@@ -79,14 +79,18 @@ def digest_of(instructions: Sequence[Instruction], common_sense: CommonSense, er
     """SHA-256 of all that is learned from: words, walks, errors, and what may be confused."""
     found = hashlib.sha256()
     walks: dict[int, bytes] = {}
-    for one in instructions:
+
+    def add(one: Instruction | ErrorEpisode, *more: object) -> None:
         key = id(one.trajectory)
         if key not in walks:
             walks[key] = hashlib.sha256(repr(one.trajectory).encode()).digest()
-        found.update(repr((one.key, one.group, one.tokens)).encode() + walks[key])
+        found.update(repr((one.key, one.group, one.tokens, *more)).encode() + walks[key])
+
+    for one in instructions:
+        add(one)
     for protocol, episodes in sorted(errors.items()):
         for episode in episodes:
-            found.update(repr((protocol, episode.key, episode.group, episode.tokens, episode.wrong)).encode())
+            add(episode, protocol, episode.wrong)
     for likely in (common_sense.rooms, common_sense.objects):
         found.update(repr(sorted((name, tuple(others)) for name, others in likely.items())).encode())
     return found.hexdigest()

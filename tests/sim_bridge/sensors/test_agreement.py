@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robustnav_msgs_py.frames import CameraMount, base_from_map, optical_from_base
-from robustnav_msgs_py.values import LaserScan, Pose2D
+from robustnav_msgs_py.values import LaserScan, Pose2D, VisibleObjects
 from sim_bridge.homes.floor_plan import OCCUPIED, floor_plan
 from sim_bridge.parameters import SimParameters
 from sim_bridge.sensors.camera import CameraFrame, map_from_optical
@@ -19,6 +19,7 @@ from sim_bridge.sensors.visibility import RAYS_PER_AXIS
 from sim_bridge.simulation import Simulation
 
 FreePoses = Callable[..., list[Pose2D]]
+Looks = list[tuple[Pose2D, CameraFrame, VisibleObjects]]
 
 MOUNT = CameraMount()
 REACH_M = 20.0
@@ -32,6 +33,13 @@ TOLERANCE_M, HAIRS_M = 0.02, (-0.003, -0.001, 0.001, 0.003)
 def sim(request: pytest.FixtureRequest) -> Iterator[Simulation]:
     with Simulation(SimParameters(seed=5, difficulty=request.param)) as made:
         yield made
+
+
+@pytest.fixture(scope="module")
+def looks(sim: Simulation, free_poses: FreePoses) -> Looks:
+    """Eighty poses, what the camera shows there, and what is said to be in view."""
+    poses = free_poses(sim.home, 80, seed=2)
+    return [(pose, sim._camera.take(pose, 0, color=False), sim._observer.look(pose, 0)) for pose in poses]
 
 
 def depth_of_rays(sim: Simulation, pose: Pose2D, u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -73,11 +81,10 @@ def test_depth_is_what_rays_meet(sim: Simulation, free_poses: FreePoses) -> None
     assert found.max() < 0.02
 
 
-def test_boxes_and_fractions_are_those_of_the_picture(sim: Simulation, free_poses: FreePoses) -> None:
+def test_boxes_and_fractions_are_those_of_the_picture(looks: Looks) -> None:
     errors, listed = [], []
-    for pose in free_poses(sim.home, 80, seed=2):
-        truth = sim._observer.look(pose, 0)
-        numbers = sim._camera.take(pose, 0, color=False).numbers
+    for _, frame, truth in looks:
+        numbers = frame.numbers
         for instance in np.unique(numbers[(numbers != NOTHING) & (numbers < FIRST_OTHER)]).tolist():
             rows, columns = np.nonzero(numbers == instance)
             if len(rows) < LARGE_PX:
@@ -95,11 +102,10 @@ def test_boxes_and_fractions_are_those_of_the_picture(sim: Simulation, free_pose
     assert (np.array(errors) <= 1.0).mean() > 0.97
 
 
-def test_what_is_said_to_be_seen_is_in_the_picture(sim: Simulation, free_poses: FreePoses) -> None:
+def test_what_is_said_to_be_seen_is_in_the_picture(sim: Simulation, looks: Looks) -> None:
     model = sim._camera.model
-    for pose in free_poses(sim.home, 60, seed=3):
-        truth = sim._observer.look(pose, 0)
-        numbers = sim._camera.take(pose, 0, color=False).numbers
+    for _, frame, truth in looks:
+        numbers = frame.numbers
         for at, instance in enumerate(truth.instance.tolist()):
             x_min, y_min, x_max, y_max = truth.box_px[at]
             if (x_max - x_min) * (y_max - y_min) < LARGE_PX or truth.visible_fraction[at] < 0.2:
@@ -109,10 +115,9 @@ def test_what_is_said_to_be_seen_is_in_the_picture(sim: Simulation, free_poses: 
             assert 0.0 <= y_min < y_max <= model.height
 
 
-def test_objects_are_where_the_model_projects_their_corners(sim: Simulation, free_poses: FreePoses) -> None:
+def test_objects_are_where_the_model_projects_their_corners(sim: Simulation, looks: Looks) -> None:
     model, checked = sim._camera.model, 0
-    for pose in free_poses(sim.home, 80, seed=4):
-        frame = sim._camera.take(pose, 0, color=False)
+    for pose, frame, _ in looks:
         for thing in sim.home.objects:
             corners = optical_from_base(MOUNT, base_from_map(pose, thing.corners_m()))
             if corners[:, 2].min() < 0.3:
