@@ -13,11 +13,10 @@ from robustnav_nodes.benchmarks.generated_instructions import (
 from robustnav_nodes.benchmarks.instruction_bench import chosen_pairs
 from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
-from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, Protocol, error_episodes
+from robustnav_nodes.instruction.injection import PROTOCOLS, Protocol, episodes_put_in
 from robustnav_nodes.instruction.mention_data import Errors
 from robustnav_nodes.instruction.pack_errors import TRAIN
 from robustnav_nodes.instruction.r2r_pack import R2rPack
-from robustnav_nodes.instruction.wording import learn_wording
 
 BENCH_HOMES = 40
 
@@ -101,21 +100,3 @@ def bench_episodes(
 
 def _workers() -> int:
     return len(os.sched_getaffinity(0))
-
-
-def episodes_put_in(
-    instructions: Sequence[Instruction], common_sense: CommonSense, protocol: Protocol, seed: int
-) -> dict[str, list[ErrorEpisode]]:
-    """Matched by the wording of the other half of the homes: by their own, what stands there fits best."""
-    homes = sorted({one.group for one in instructions})
-    halves = (set(homes[::2]), set(homes[1::2]))
-    found: dict[str, list[ErrorEpisode]] = {name: [] for name in ERROR_TYPES}
-    for half in halves:
-        wording = None
-        if protocol == "matched":
-            wording = learn_wording(one.tokens for one in instructions if one.group not in half)
-        injector = Injector(common_sense=common_sense, wording=wording)
-        own = [one for one in instructions if one.group in half]
-        for name, episodes in found.items():
-            episodes += error_episodes(own, name, injector, seed)
-    return found

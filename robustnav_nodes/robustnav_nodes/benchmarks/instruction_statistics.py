@@ -4,10 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robustnav_nodes.benchmarks.instruction_episodes import episodes_put_in
 from robustnav_nodes.instruction.common_sense import anything_goes
 from robustnav_nodes.instruction.episodes import ERROR_TYPES
-from robustnav_nodes.instruction.injection import PROTOCOLS, ErrorStatistics, Protocol, error_statistics
+from robustnav_nodes.instruction.injection import (
+    PROTOCOLS,
+    ErrorStatistics,
+    Protocol,
+    episodes_put_in,
+    error_statistics,
+)
 from robustnav_nodes.instruction.r2r_pack import R2rPack
 
 SEED = 1  # of the errors that are put in anew

@@ -24,7 +24,7 @@ from robustnav_nodes.instruction.concepts import (
 )
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction, WrongSpan
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
-from robustnav_nodes.instruction.wording import Wording
+from robustnav_nodes.instruction.wording import Wording, learn_wording
 
 Protocol = Literal["uniform", "matched"]
 PROTOCOLS: tuple[Protocol, ...] = ("uniform", "matched")
@@ -120,6 +120,24 @@ def error_episodes(
                 trajectory=instruction.trajectory,
                 wrong=wrong,
             )
+
+
+def episodes_put_in(
+    instructions: Sequence[Instruction], common_sense: CommonSense, protocol: Protocol, seed: int
+) -> dict[str, list[ErrorEpisode]]:
+    """Matched by the wording of the other half of the homes: by their own, what stands there fits best."""
+    homes = sorted({one.group for one in instructions})
+    halves = (set(homes[::2]), set(homes[1::2]))
+    found: dict[str, list[ErrorEpisode]] = {name: [] for name in ERROR_TYPES}
+    for half in halves:
+        wording = None
+        if protocol == "matched":
+            wording = learn_wording(one.tokens for one in instructions if one.group not in half)
+        injector = Injector(common_sense=common_sense, wording=wording)
+        own = [one for one in instructions if one.group in half]
+        for name, episodes in found.items():
+            episodes += error_episodes(own, name, injector, seed)
+    return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

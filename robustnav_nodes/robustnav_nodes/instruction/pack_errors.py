@@ -6,7 +6,7 @@ from typing import Any
 from robustnav_nodes.instruction.common_sense import derive_common_sense
 from robustnav_nodes.instruction.concepts import DIRECTION, pair_of
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction, WrongSpan
-from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, error_episodes
+from robustnav_nodes.instruction.injection import PROTOCOLS, Injector, episodes_put_in, error_episodes
 from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.pack_writing import PackWriter
 from robustnav_nodes.instruction.r2r_pack import R2rPack
@@ -18,7 +18,8 @@ TRAIN = "train"
 def write_errors(writer: PackWriter, splits: Sequence[str], seed: int) -> dict[str, int]:
     """Write priors.json and errors_*/ into a pack whose other files are written; count episodes by file.
 
-    Common sense and wording are those of the split `train`, which must be there.
+    Common sense and wording are those of the split `train`, which must be there; in `train` itself the
+    wording is that of other homes.
     """
     pack = R2rPack(writer.folder)
     clean = {split: pack.instructions(split) for split in splits}
@@ -33,12 +34,17 @@ def write_errors(writer: PackWriter, splits: Sequence[str], seed: int) -> dict[s
     )
     counts: dict[str, int] = {}
     for protocol in PROTOCOLS:
+        in_train = episodes_put_in(clean[TRAIN], common_sense, protocol, seed)
         injector = Injector(common_sense=common_sense, wording=wording if protocol == "matched" else None)
         for split in splits:
             said = {instruction.key: instruction for instruction in clean[split]}
             for error_type in ERROR_TYPES:
                 name = f"errors_{protocol}/{split}_{error_type}.jsonl.gz"
-                episodes = error_episodes(clean[split], error_type, injector, seed)
+                episodes = (
+                    in_train[error_type]
+                    if split == TRAIN
+                    else error_episodes(clean[split], error_type, injector, seed)
+                )
                 counts[name] = writer.rows(name, (_row(episode, said) for episode in episodes))
     return counts
 
