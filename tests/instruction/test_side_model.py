@@ -17,7 +17,7 @@ from robustnav_nodes.instruction.side_model import (
     walk_sides,
 )
 from robustnav_nodes.instruction.tokens import tokenized
-from robustnav_nodes.instruction.trajectory import Trajectory
+from robustnav_nodes.instruction.trajectory import SeenObject, Trajectory, Viewpoint
 from tests.instruction.small_world import said_walks
 
 TOKENS = tokenized("Pass the bed on your left and turn right at the painting.")
@@ -30,6 +30,10 @@ def in_mirror(scene: Scene) -> Scene:
         yaw_in_rad=-scene.yaw_in_rad,
         turn_rad=-scene.turn_rad,
         bearing_rad=-scene.bearing_rad,
+        things={
+            name: dataclasses.replace(seen, bearing_rad=-seen.bearing_rad)
+            for name, seen in scene.things.items()
+        },
     )
 
 
@@ -46,13 +50,32 @@ def test_the_other_side_in_the_mirror_is_the_same(walk: Trajectory, number: int)
     assert np.allclose(mirrored(left), right)
 
 
+def test_the_leftmost_in_the_mirror_is_the_rightmost() -> None:
+    doors = tuple(SeenObject(name="door", bearing_rad=bearing, range_m=2.0) for bearing in (0.6, -0.6))
+    walk = Trajectory(
+        viewpoints=tuple(
+            Viewpoint(
+                x_m=x, y_m=0.6 * x, z_m=0.0, yaw_in_rad=0.0, yaw_out_rad=0.0, objects=() if at else doors
+            )
+            for at, x in enumerate((0.0, 1.0, 2.0))
+        )
+    )
+    tokens = tokenized("take the leftmost door")
+    mentions = find_mentions(tokens)
+    scene, other = scene_of(walk), in_mirror(scene_of(walk))
+    left, right = (side_features(walk_sides(scene), scene, tokens, mentions, 0, sign) for sign in (1.0, -1.0))
+    assert left[0, ODD.stop - 1] > 0.5
+    assert right[0, ODD.stop - 1] < -0.5
+    assert np.allclose(side_features(walk_sides(other), other, tokens, mentions, 0, -1.0), left)
+
+
 def test_a_thing_to_the_left_speaks_for_the_left(walk: Trajectory) -> None:
     """The bed, named before "on your left", stands to the left of the first viewpoint."""
     scene = scene_of(walk)
     mentions = find_mentions(TOKENS)
     m = next(k for k, mention in enumerate(mentions) if mention.concept == "left")
     left, right = (side_features(walk_sides(scene), scene, TOKENS, mentions, m, sign) for sign in (1.0, -1.0))
-    arriving, leaving = ODD.stop - 2, ODD.stop - 1  # where the thing stands that was named beside the side
+    arriving, leaving = ODD.stop - 3, ODD.stop - 2  # where the thing stands that was named beside the side
     assert left[0, arriving] > 0.5
     assert left[0, leaving] > 0.5
     assert right[0, arriving] < -0.5

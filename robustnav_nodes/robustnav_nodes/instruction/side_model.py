@@ -11,18 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from robustnav_msgs_py.values import Float64
-from robustnav_nodes.instruction.concepts import DIRECTION
-from robustnav_nodes.instruction.direction_phrases import PHRASES, phrase_of
+from robustnav_nodes.instruction.direction_phrases import OUTERMOST, PHRASES, phrase_of
 from robustnav_nodes.instruction.mentions import Mention
-from robustnav_nodes.instruction.scene import FAR_M, OBJECT_INDEX, Scene
+from robustnav_nodes.instruction.scene import FAR_M, Scene
+from robustnav_nodes.instruction.thing_beside import nearest_views, outermost, thing_beside
 
 # +1 where the side is the left one.
 SIDES = {"left": 1.0, "leftmost": 1.0, "right": -1.0, "rightmost": -1.0}
 _SOFT_RAD, _SOFT_M, _FADE_M = 0.8, 2.0, 3.0
 _FAR_STEPS = 99
-_LINK_REACH = 5  # tokens between a side and the thing that stands there
-FEATURES = 28
-ODD = slice(0, 12)  # the columns of `side_features` that change their sign in the mirror
+FEATURES = 32
+ODD = slice(0, 13)  # the columns of `side_features` that change their sign in the mirror
 _LIMIT = 4.0  # of the log evidence: nothing that is seen or missed decides alone
 _UNITS = 32
 
@@ -41,7 +40,7 @@ class SideModel:
         return kept
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WalkSides:
     """A walk as sides see it: `odd` [T, .] changes its sign in the mirror, `even` [T, .] does not."""
 
@@ -73,32 +72,20 @@ def side_features(
 ) -> Float64:
     """float64 [T, FEATURES] of mention `m` as if it said the left (`sign` 1) or the right (-1)."""
     count = len(scene)
+    said = phrase_of(tokens, mentions[m])
     phrase = np.zeros((count, PHRASES))
-    phrase[:, phrase_of(tokens, mentions[m])] = 1.0
-    linked = np.zeros((count, 3))
-    column = _linked_object(mentions, m)
-    if column is not None:
-        ranges, bearing = scene.range_m[:, column], scene.bearing_rad[:, column]
-        near = np.where(np.isnan(bearing) | (ranges >= FAR_M), 0.0, np.exp(-ranges / _FADE_M))
-        aside = np.nan_to_num(bearing)
-        linked[:, 0] = sign * near * np.sin(aside)
-        linked[:, 1] = sign * near * np.sin(aside - scene.turn_rad)
-        linked[:, 2] = near
-    return np.hstack([sign * walk.odd, linked[:, :2], walk.even, phrase, linked[:, 2:]])
-
-
-def _linked_object(mentions: Sequence[Mention], m: int) -> int | None:
-    """The column of the object that is named right before or after a side."""
-    side = mentions[m]
-    found: tuple[int, int] | None = None
-    for other in mentions[max(0, m - 1) : m + 2]:
-        if other.kind == DIRECTION or other.concept not in OBJECT_INDEX:
-            continue
-        first, second = sorted((side, other), key=lambda one: one.start)
-        gap = second.start - first.start - first.length
-        if gap <= _LINK_REACH and (found is None or gap < found[0]):
-            found = gap, OBJECT_INDEX[other.concept]
-    return None if found is None else found[1]
+    phrase[:, said] = 1.0
+    beside = np.zeros((count, 4))
+    name = thing_beside(scene, tokens, mentions, m)
+    if name is not None:
+        ranges, bearing = nearest_views(scene, name)
+        near = np.where(ranges < FAR_M, np.exp(-ranges / _FADE_M), 0.0)
+        beside[:, 0] = sign * near * np.sin(bearing)
+        beside[:, 1] = sign * near * np.sin(bearing - scene.turn_rad)
+        if said == OUTERMOST:
+            beside[:, 2] = sign * outermost(scene, name)
+        beside[:, 3] = near
+    return np.hstack([sign * walk.odd, beside[:, :3], walk.even, phrase, beside[:, 3:]])
 
 
 def mirrored(rows: Float64) -> Float64:

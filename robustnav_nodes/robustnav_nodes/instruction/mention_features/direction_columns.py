@@ -10,16 +10,18 @@ import numpy as np
 
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import DIRECTION
-from robustnav_nodes.instruction.direction_phrases import TURN, phrase_of
+from robustnav_nodes.instruction.direction_phrases import OUTERMOST, TURNS, phrase_of
 from robustnav_nodes.instruction.mention_features.columns import Columns, Told, Walked
-from robustnav_nodes.instruction.scene import OBJECT_INDEX
+from robustnav_nodes.instruction.scene import FAR_M, OBJECT_INDEX
 from robustnav_nodes.instruction.side_model import SIDES
+from robustnav_nodes.instruction.thing_beside import nearest_views, outermost, thing_beside
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES
 
 _UP = {"up": 1.0, "down": -1.0}
 _TURNED_RAD = 0.6  # what counts as a turn that people mention
 _SOFT_RAD = 0.8
 _TO_THE_END = 99
+_LEAST = 1e-9
 _STAIRS = OBJECT_INDEX["stairs"]
 _PORCH = ROOM_TYPES.index("porch")
 
@@ -30,6 +32,7 @@ def add_directions(columns: Columns, said: Told, walk: Walked, odds: Float64) ->
     _add_turns(columns, walk, sign)
     _add_ordinal_turns(columns, said, walk, sign)
     _add_way_ahead(columns, walk, sign)
+    _add_things_beside(columns, said, walk, sign)
     _add_other_sides(columns, sign, odds)
     _add_climbs(columns, said, walk)
     _add_room_changes(columns, walk)
@@ -76,7 +79,7 @@ def _add_ordinal_turns(columns: Columns, said: Told, walk: Walked, sign: Float64
     turns = [
         m
         for m, mention in enumerate(said.mentions)
-        if mention.concept in SIDES and phrase_of(said.tokens, mention) == TURN
+        if mention.concept in SIDES and phrase_of(said.tokens, mention) in TURNS
     ]
     made = np.flatnonzero(np.abs(turn) > _TURNED_RAD)
     found = np.full((4, len(said)), np.nan)
@@ -104,6 +107,36 @@ def _add_way_ahead(columns: Columns, walk: Walked, sign: Float64) -> None:
         columns.add(f"aside_{steps}", sign * (walk.elsewhere @ aside))
         columns.add(f"ahead_{steps}", walk.elsewhere @ ahead)
         columns.add(f"aside_{steps}_by_text", sign * aside[walk.by_text])
+
+
+_BESIDE = ("side", "side_leaving", "side_top", "side_end", "range", "outermost", "outermost_top")
+
+
+def _add_things_beside(columns: Columns, said: Told, walk: Walked, sign: Float64) -> None:
+    """Where the nearest thing named beside a side stands, and whether it is the outermost of several."""
+    found = np.full((len(_BESIDE), len(said)), np.nan)
+    scene = walk.scene
+    for m in np.flatnonzero(~np.isnan(sign)).tolist():
+        name = thing_beside(scene, said.tokens, said.mentions, m)
+        if name is None:
+            continue
+        ranges, bearing = nearest_views(scene, name)
+        share = np.where(ranges < FAR_M, walk.elsewhere[m] / (0.5 + ranges), 0.0)
+        share /= max(float(share.sum()), _LEAST)
+        top = int(share.argmax())
+        found[:5, m] = (
+            sign[m] * float(share @ np.sin(bearing)),
+            sign[m] * float(share @ np.sin(bearing - scene.turn_rad)),
+            sign[m] * math.sin(bearing[top]),
+            sign[m] * math.sin(bearing[-1]) if ranges[-1] < FAR_M else math.nan,
+            ranges[top],
+        )
+        if phrase_of(said.tokens, said.mentions[m]) == OUTERMOST:
+            rank = outermost(scene, name)
+            found[5, m] = sign[m] * float(walk.elsewhere[m] @ rank)
+            found[6, m] = sign[m] * rank[int((walk.elsewhere[m] * np.abs(rank)).argmax())]
+    for name, values in zip(_BESIDE, found, strict=True):
+        columns.add(f"beside_{name}", values)
 
 
 def _add_other_sides(columns: Columns, sign: Float64, odds: Float64) -> None:
