@@ -8,7 +8,7 @@ import pytest
 from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.concepts import OBJECTS, ROOMS
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, Instruction
-from robustnav_nodes.instruction.injection import Injector, error_episodes, error_statistics
+from robustnav_nodes.instruction.injection import Injector, episodes_put_in, error_episodes, error_statistics
 from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.wording import learn_wording
@@ -48,11 +48,57 @@ def test_common_sense_is_kept(instruction: Instruction) -> None:
 def test_matched_takes_the_likely_word(instruction: Instruction) -> None:
     """Of two replacements, one that people write there and one that nobody does, the first is taken."""
     usual = [tokenized(f"stop in the {room} next to the refrigerator") for room in ("kitchen", "patio")] * 50
-    common_sense = CommonSense(rooms={"kitchen": ("garage", "patio")}, objects={})
-    injector = Injector(common_sense=common_sense, wording=learn_wording(usual))
+    rooms = {"kitchen": ("garage", "patio"), "garage": ("kitchen",), "patio": ("kitchen",)}
+    injector = Injector(common_sense=CommonSense(rooms=rooms, objects={}), wording=learn_wording(usual))
     some = [replace(instruction, key=str(k)) for k in range(100)]
     taken = [e.wrong[0].wrong for e in error_episodes(some, "room", injector, 1) if e.wrong]
     assert taken.count("patio") > 20 * max(1, taken.count("garage"))
+
+
+def test_rare_words_are_as_rare_in_wrong_instructions(instruction: Instruction) -> None:
+    """Of ten instructions nine say "kitchen": so do nine of ten of those with errors (one draw for each)."""
+    texts = [
+        tokenized(f"walk along the way and then stop in the {'patio' if k % 10 else 'gym'}")
+        for k in range(400)
+    ]
+    common_sense = CommonSense(rooms={"patio": ("gym",), "gym": ("patio",)}, objects={})
+    injector = Injector(common_sense=common_sense, wording=learn_wording(texts))
+    some = [replace(instruction, key=str(k), tokens=tokens) for k, tokens in enumerate(texts)]
+    wrong = [one for one in error_episodes(some, "room", injector, 1) if one.wrong]
+    rare = sum(one.wrong[0].wrong == "gym" for one in wrong) / len(wrong)
+    assert 0.1 < rare < 0.75  # of one draw half; all of them, were each one changed
+
+
+@pytest.mark.parametrize("protocol", ["uniform", "matched"])
+def test_words_put_in_are_read_as_such(instruction: Instruction, protocol: str) -> None:
+    """A lounge before an area rug would be a lounge area and a rug."""
+    tokens = tokenized("walk along the hallway area rug to the bed in the lounge and stop .")
+    likely = CommonSense(
+        rooms={"hallway": ("lounge", "kitchen"), "lounge": ("hallway",), "kitchen": ("hallway",)},
+        objects={"rug": ("bathtub",), "bathtub": ("rug", "bed"), "bed": ("bathtub",)},
+    )
+    wording = learn_wording([]) if protocol == "matched" else None
+    injector = Injector(common_sense=likely, wording=wording)
+    some = [replace(instruction, key=str(k), tokens=tokens) for k in range(200)]
+    found = [one for one in error_episodes(some, "room_object", injector, 1) if one.wrong]
+    assert found
+    for one in found:
+        mentions = {(m.start, m.length, m.kind, m.concept) for m in find_mentions(one.tokens)}
+        assert {(span.start, span.length, span.kind, span.wrong) for span in one.wrong} <= mentions
+
+
+def test_a_given_wording_decides_in_all_homes(instruction: Instruction) -> None:
+    some = [replace(instruction, key=str(k), group=f"home {k}") for k in range(40)]
+    rooms = CommonSense(rooms={"kitchen": ("patio",), "patio": ("kitchen",)}, objects={})
+    usual, never = (
+        learn_wording([tokenized(f"walk out of the bedroom and stop in the {room}")] * 50)
+        for room in ("patio", "kitchen")
+    )
+    found = [
+        len(episodes_put_in(some, rooms, "matched", 1, wording=wording)["room"]) for wording in (usual, never)
+    ]
+    assert found[0] == 2 * len(some)
+    assert found[1] < found[0] / 2
 
 
 def test_a_plural_stays_one() -> None:
@@ -66,8 +112,12 @@ def test_a_plural_stays_one() -> None:
 def test_any_text_can_be_given(instruction: Instruction, text: str) -> None:
     odd = replace(instruction, tokens=tokenized(text))
     for error_type in ERROR_TYPES:
-        for episode in error_episodes([odd], error_type, Injector(common_sense=anything_goes()), 1):
-            assert len(episode.tokens) == len(odd.tokens)
+        for injector in (
+            Injector(common_sense=anything_goes()),
+            Injector(common_sense=anything_goes(), wording=learn_wording([])),
+        ):
+            for episode in error_episodes([odd], error_type, injector, 1):
+                assert len(episode.tokens) == len(odd.tokens)
 
 
 def test_common_sense_from_data(instruction: Instruction) -> None:

@@ -15,8 +15,10 @@ from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes,
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, ErrorEpisode, Instruction
 from robustnav_nodes.instruction.injection import PROTOCOLS, Protocol, episodes_put_in
 from robustnav_nodes.instruction.mention_data import Errors
+from robustnav_nodes.instruction.model_file import SHIPPED, load_model
 from robustnav_nodes.instruction.pack_errors import TRAIN
 from robustnav_nodes.instruction.r2r_pack import R2rPack
+from robustnav_nodes.instruction.wording import learn_wording
 
 BENCH_HOMES = 40
 
@@ -71,8 +73,9 @@ def bench_episodes(
     """Clean and perturbed episodes by protocol and type of error, `at_most` of each.
 
     Of each protocol those of the pack where it holds any, else put in anew by the seed; always so without
-    `common_sense`: any room may then replace any, and any object. Raises BadFileError for a pack that is
-    none, or has no such split.
+    `common_sense`: any room may then replace any, and any object. Matched ones in homes made for this are
+    drawn by the wording that comes along, whatever model is judged; in a pack by that of its `train`, which
+    needs torch (BadParameterError). Raises BadFileError for a pack that is none, or has no such split.
     """
     pack = R2rPack(data) if data is not None else None
     found: Episodes = {}
@@ -81,17 +84,22 @@ def bench_episodes(
             found[protocol] = {name: pack.episodes(split, protocol, name) for name in ERROR_TYPES}
     missing = [protocol for protocol in protocols if protocol not in found]
     if missing:
+        wording = None
         if pack is None:
             plan = GenerationPlan(seed=seed, homes=0, unseen=BENCH_HOMES)
             instructions = list(generated_instructions(plan, VAL_UNSEEN, _workers(), say))
+            if "matched" in missing:
+                wording = load_model(SHIPPED).knowledge.wording
         else:
             instructions = pack.instructions(split)
+            if "matched" in missing and split != TRAIN and TRAIN in pack.splits:
+                wording = learn_wording(one.tokens for one in pack.instructions(TRAIN))
         if not common_sense:
             likely = anything_goes()
         else:
             likely = derive_common_sense(instructions) if pack is None else pack.common_sense()
         for protocol in missing:
-            found[protocol] = episodes_put_in(instructions, likely, protocol, seed)
+            found[protocol] = episodes_put_in(instructions, likely, protocol, seed, wording=wording)
     return {
         protocol: {name: chosen_pairs(part, at_most, seed) for name, part in found[protocol].items()}
         for protocol in protocols

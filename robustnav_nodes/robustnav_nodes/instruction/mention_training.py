@@ -64,8 +64,8 @@ class MentionSettings:
 
     trees: TreeSettings = field(default_factory=TreeSettings)
     network: NetworkSettings = field(default_factory=NetworkSettings)
-    # matched errors are hard to find and, of most types, rare
-    draws: Mapping[Protocol, int] = field(default_factory=lambda: {"uniform": 1, "matched": 2})
+    # matched errors are found in few instructions at a time
+    draws: Mapping[Protocol, int] = field(default_factory=lambda: {"uniform": 1, "matched": 3})
     folds: int = 4
 
 
@@ -84,7 +84,7 @@ def learn_knowledge(
     ]
     return Knowledge(
         places=learn_places([scenes[key] for key in numbers], said, seed=seed),
-        wording=learn_wording(one.tokens for one in instructions),
+        wording=learn_wording((one.tokens for one in instructions), seed=seed),
         replacements=replacements_of(common_sense),
     )
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadFileError
 from robustnav_msgs_py.values import Float64
-from robustnav_nodes.instruction.concepts import CONCEPTS, KINDS
+from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
@@ -29,13 +29,14 @@ from robustnav_nodes.instruction.side_model import FEATURES as SIDE_FEATURES
 from robustnav_nodes.instruction.side_model import SideModel
 from robustnav_nodes.instruction.surprise import Surprise, surprise_from_arrays
 from robustnav_nodes.instruction.trees import trees_from_arrays
-from robustnav_nodes.instruction.wording import Wording
+from robustnav_nodes.instruction.wording import wording_from_weights
 
 if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_model import IedlModel
 
 SHIPPED = Path(__file__).with_name("weights.npz")
-FORMAT = 3
+FORMAT = 4
+_WORDING = ("embedding", "bias", "out")
 _PLACES = ("mean", "scale", "hidden", "out", "log_share", "climbs")
 
 
@@ -79,8 +80,7 @@ def save_model(path: Path, model: LearnedModel) -> None:
     """Write the file whole or not at all. Raises BadFileError where it cannot be written."""
     arrays: dict[str, NDArray[Any]] = {
         "words": np.array(list(model.knowledge.wording.words)),
-        "wording/base": model.knowledge.wording.base.astype(np.float32),
-        "wording/beside": model.knowledge.wording.beside.astype(np.float32),
+        **{f"wording/{part}": getattr(model.knowledge.wording, part).astype(np.float32) for part in _WORDING},
         "replacements": model.knowledge.replacements.log_share.astype(np.float32),
         **model.surprise.arrays(),
         **model.iedl_arrays,
@@ -158,7 +158,6 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
             blind=bool(row["blind"]),
         )
     words = [str(word) for word in arrays["words"]]
-    beside = arrays["wording/beside"].astype(np.float64)
     return LearnedModel(
         features=tuple(header["features"]),
         knowledge=Knowledge(
@@ -166,10 +165,8 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
                 sides=_sides(arrays),
                 **{part: arrays[f"places/{part}"].astype(np.float64) for part in _PLACES},
             ),
-            wording=Wording(
-                words={word: k for k, word in enumerate(words)},
-                base=_shaped(arrays["wording/base"].astype(np.float64), (len(CONCEPTS),)),
-                beside=_shaped(beside, (len(words), beside.shape[1], len(CONCEPTS))),
+            wording=wording_from_weights(
+                words, *(arrays[f"wording/{part}"].astype(np.float64) for part in _WORDING)
             ),
             replacements=Replacements(log_share=arrays["replacements"].astype(np.float64)),
         ),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.alignment import place_mentions
-from robustnav_nodes.instruction.concepts import CONCEPT_NUMBER, CONCEPTS, FIRST_OBJECT
+from robustnav_nodes.instruction.concepts import CONCEPT_NUMBER, FIRST_OBJECT
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
 from robustnav_nodes.instruction.mentions import Mention
 from robustnav_nodes.instruction.place_model import PlaceModel, said_at
@@ -86,7 +86,7 @@ def told(tokens: Sequence[str], mentions: Sequence[Mention], wording: Wording) -
         tokens=tokens,
         mentions=mentions,
         numbers=np.array([CONCEPT_NUMBER[m.kind, m.concept] for m in mentions], dtype=np.int64),
-        fits=np.array([wording.log_fits(tokens, m) for m in mentions]).reshape(len(mentions), len(CONCEPTS)),
+        fits=wording.log_fits(tokens, mentions),
     )
 
 

@@ -12,6 +12,7 @@ from robustnav_nodes.instruction.mention_features.replacements import (
     replacement_odds,
     worst_other,
 )
+from robustnav_nodes.instruction.wording import KIND_OF_CONCEPT
 
 
 def _words(line: str) -> tuple[str, ...]:
@@ -41,7 +42,7 @@ def add_wording(columns: Columns, said: Told, replacements: Replacements) -> Flo
     own = said.fits[rows, said.numbers] if len(said) else np.zeros(0)
     columns.add("concept", said.numbers.astype(float))
     columns.add("fit", own)
-    columns.add("share", own - np.logaddexp.reduce(said.fits, axis=1) if len(said) else own)
+    columns.add("fit_of_best", _best_of_kind(said))
     odds = replacement_odds(said.fits, said.numbers, replacements)
     for name, values in zip(ODDS, odds, strict=True):
         columns.add(f"blind_{name}", values)
@@ -53,6 +54,13 @@ def add_wording(columns: Columns, said: Told, replacements: Replacements) -> Flo
     columns.add("fit_after", np.concatenate([uniform[1:], [np.nan]]) if len(said) else uniform)
     columns.add("fit_worst_other", worst_other(uniform))
     return uniform
+
+
+def _best_of_kind(said: Told) -> Float64:
+    """float64 [M]: how well the concept fits that fits best where each mention stands."""
+    own_kind = KIND_OF_CONCEPT[None, :] == KIND_OF_CONCEPT[said.numbers][:, None]
+    best: Float64 = np.where(own_kind, said.fits, -np.inf).max(axis=1)
+    return best
 
 
 def _add_neighbouring_words(columns: Columns, said: Told) -> None:
