@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robustnav_nodes.instruction import injection
 from robustnav_nodes.instruction.common_sense import CommonSense, anything_goes, derive_common_sense
 from robustnav_nodes.instruction.concepts import OBJECTS, ROOMS
 from robustnav_nodes.instruction.episodes import ERROR_TYPES, Instruction
@@ -55,8 +56,11 @@ def test_matched_takes_the_likely_word(instruction: Instruction) -> None:
     assert taken.count("patio") > 20 * max(1, taken.count("garage"))
 
 
-def test_rare_words_are_as_rare_in_wrong_instructions(instruction: Instruction) -> None:
-    """Of ten instructions nine say "kitchen": so do nine of ten of those with errors (one draw for each)."""
+def test_of_single_draws_rare_words_are_put_in_as_often_as_taken_out(
+    instruction: Instruction, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nine of ten say "patio", one says "gym": as many become gyms as gyms become patios."""
+    monkeypatch.setattr(injection, "_MATCHED_TRIES", 1)
     texts = [
         tokenized(f"walk along the way and then stop in the {'patio' if k % 10 else 'gym'}")
         for k in range(400)
@@ -65,8 +69,7 @@ def test_rare_words_are_as_rare_in_wrong_instructions(instruction: Instruction) 
     injector = Injector(common_sense=common_sense, wording=learn_wording(texts))
     some = [replace(instruction, key=str(k), tokens=tokens) for k, tokens in enumerate(texts)]
     wrong = [one for one in error_episodes(some, "room", injector, 1) if one.wrong]
-    rare = sum(one.wrong[0].wrong == "gym" for one in wrong) / len(wrong)
-    assert 0.1 < rare < 0.75  # of one draw half; all of them, were each one changed
+    assert sum(one.wrong[0].wrong == "gym" for one in wrong) / len(wrong) == pytest.approx(0.5, abs=0.12)
 
 
 @pytest.mark.parametrize("protocol", ["uniform", "matched"])
