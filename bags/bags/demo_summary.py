@@ -9,6 +9,7 @@ from bags.metrics import SearchMetrics, search_metrics
 from bags.picture import draw_search
 from bags.reader import open_bag
 from robustnav_msgs_py.errors import RobustnavError
+from robustnav_msgs_py.records import SearchPhase
 from robustnav_nodes.graph.demo import DemoEnd
 
 
@@ -23,7 +24,7 @@ def show_summary(console: Console, end: DemoEnd, bag: Path, logs: Path) -> bool:
         console.print("[red]no summary:[/] ", end="")
         console.print(f"{error}; the nodes' logs are in {logs}", markup=False)
         return False
-    console.print(_verdict(metrics, end))
+    console.print(verdict(metrics, end))
     console.print(_table(metrics, end, bag, picture, logs))
     return metrics.success is True
 
@@ -48,13 +49,19 @@ def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs:
     return table
 
 
-def _verdict(metrics: SearchMetrics, end: DemoEnd) -> str:
+def verdict(metrics: SearchMetrics, end: DemoEnd) -> str:
+    """A sentence in rich's markup: what the robot says of the search, and what the bag says of that."""
+    target = metrics.target or "object"
     if metrics.success:
-        return f"[bold green]found[/] the {metrics.target}, and it is really there"
+        return f"[bold green]found[/] the {target}, and it is really there"
+    if metrics.success is None and metrics.found:
+        return f"[bold yellow]found[/] the {target}, the robot says; the bag does not tell where it really is"
     if metrics.found:
-        return f"[bold red]mistaken[/]: the robot says it found the {metrics.target}, but it is not there"
+        return f"[bold red]mistaken[/]: the robot says it found the {target}, but it is not there"
+    if end.search.phase == SearchPhase.FOUND:
+        return f"[bold yellow]found[/] the {target}, the robot says; the bag ends before that"
     if end.timed_out:
-        return f"[bold red]not found[/]: the time was over while looking for the {metrics.target or 'object'}"
+        return f"[bold red]not found[/]: the time was over while looking for the {target}"
     return f"[bold red]not found[/]: {end.search.message or 'interrupted'}"
 
 

@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from rclpy.duration import Duration
@@ -100,9 +100,8 @@ class TopicListener:
                     self._hear(topic, message_type, offers)
 
     def close(self) -> None:
-        """Hear nothing any more."""
-        for heard in self._heard.values():
-            self._unsubscribe(heard)
+        """Hear nothing any more; what has arrived until now is taken first."""
+        self._unsubscribe(*self._heard.values())
         self._heard.clear()
 
     def _is_due(self, topic: str, message_type: str) -> bool:
@@ -156,10 +155,30 @@ class TopicListener:
         elif self._clock() - heard.forsaken_since_s >= FORSAKEN_AFTER_S:
             self._unsubscribe(heard)
 
-    def _unsubscribe(self, heard: _Heard) -> None:
-        if heard.subscription is not None:
+    def _unsubscribe(self, *topics: _Heard) -> None:
+        """Let topics go when what has arrived of them is taken, in the order in which it was said.
+
+        A busy machine may leave the executor no time for the last words of a run.
+        """
+        open_ones = [heard for heard in topics if heard.subscription is not None]
+        waiting: list[tuple[int, Subscription, bytes]] = []
+        for heard in open_ones:
+            waiting += self._waiting_in(heard.subscription)
+        for _, subscription, data in sorted(waiting, key=lambda one: one[0]):
+            subscription.callback(data)
+        for heard in open_ones:
             self._node.destroy_subscription(heard.subscription)
             heard.subscription = None
+
+    def _waiting_in(self, subscription: Subscription) -> Iterator[tuple[int, Subscription, bytes]]:
+        """The messages that a subscription keeps, which are at most `depth`, each with its source time."""
+        for _ in range(self._depth):
+            with subscription.handle:
+                taken = subscription.handle.take_message(subscription.msg_type, True)
+            if taken is None:
+                return
+            data, info = taken
+            yield info["source_timestamp"], subscription, data
 
     def _subscribe(self, topic: str, message_type: str, channel: int, request: Request) -> Subscription:
         put = self._recording.put

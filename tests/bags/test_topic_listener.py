@@ -1,4 +1,4 @@
-"""A topic whose speakers have all left is let go, and heard again when one comes."""
+"""A topic whose speakers have all left is let go, and heard again when one comes; nothing said is lost."""
 
 import re
 import time
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
+from rclpy.duration import Duration
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -167,3 +168,13 @@ def test_a_patient_listener_lets_others_be_found_first(room: Room) -> None:
     room.until(lambda: speaker.get_subscription_count() == 1)
     room.say(speaker, "heard")
     assert words(room) == ["heard"]
+
+
+def test_what_waits_when_the_listener_closes_is_in_the_bag(room: Room) -> None:
+    speaker = room.speaker(QoSProfile(depth=10))
+    for word in ("find", "the", "mug"):
+        speaker.publish(String(data=word))
+    assert speaker.wait_for_all_acked(Duration(seconds=LIMIT_S))
+    assert sum(count.messages for count in room.recording.counts()) == 0
+    room.listener.close()
+    assert words(room) == ["find", "the", "mug"]
