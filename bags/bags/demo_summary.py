@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from bags.metrics import SearchMetrics, search_metrics
@@ -51,7 +52,7 @@ def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs:
 
 def verdict(metrics: SearchMetrics, end: DemoEnd) -> str:
     """A sentence in rich's markup: what the robot says of the search, and what the bag says of that."""
-    target = metrics.target or "object"
+    target = escape(metrics.target or end.search.target or "object")
     if metrics.success:
         return f"[bold green]found[/] the {target}, and it is really there"
     if metrics.success is None and metrics.found:
@@ -62,7 +63,7 @@ def verdict(metrics: SearchMetrics, end: DemoEnd) -> str:
         return f"[bold yellow]found[/] the {target}, the robot says; the bag ends before that"
     if end.timed_out:
         return f"[bold red]not found[/]: the time was over while looking for the {target}"
-    return f"[bold red]not found[/]: {end.search.message or 'interrupted'}"
+    return f"[bold red]not found[/]: {escape(end.search.message) or 'interrupted'}"
 
 
 def _number(value: float | None) -> str:

@@ -8,8 +8,8 @@
 | asks | every node's `list_parameters` and `get_parameters`, for the manifest |
 
 It records while it is active. With `resume` it goes on in the bag of its name that a killed recorder left:
-that one's file is repaired, and the next file of the bag is begun. Deactivating returns at once: what was
-heard until then is still written, by a thread of its own. Cleaning up, shutting down or ending the process
+that one's file is repaired, and the next file of the bag is begun. Deactivating returns at once: what has
+arrived until then is still written, by a thread of its own. Cleaning up, shutting down or ending the process
 waits until the bag is closed.
 """
 
@@ -229,8 +229,10 @@ class Recorder(GraphNode[RecorderParameters]):
             elif recording.failure:
                 self.health.problem("bag", recording.failure, ERROR)
             else:
-                total = sum(count.messages for count in recording.counts())
-                self.get_logger().info(f"closed {recording.folder} with {total} messages")
+                counts = recording.counts()
+                total, dropped = sum(c.messages for c in counts), sum(c.dropped for c in counts)
+                without = f", {dropped} dropped" if dropped else ""
+                self.get_logger().info(f"closed {recording.folder} with {total} messages{without}")
         self._closing.clear()
         self._tell_repairs()
 

@@ -1,9 +1,11 @@
 """Hears every topic of the graph as bytes and puts it into a recording."""
 
+import heapq
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -47,7 +49,7 @@ class TopicListener:
     appeared; what is said in one breath before that is not recorded (the dialogue tells what it heard).
 
     Log times are wall-clock times at which a message was taken, as rosbag2 has them without simulated time;
-    a message's source time is not known, since rclpy's EventsExecutor cannot hand it out.
+    a message's source time is not recorded, since rclpy's EventsExecutor cannot hand it out.
 
     Owned by a node and used in its executor's thread. `observer_of(topic, type)` may return a function that
     is shown the bytes of each message of that topic; `say(topic, sentence)` is told what could not be heard;
@@ -160,15 +162,15 @@ class TopicListener:
 
         A busy machine may leave the executor no time for the last words of a run.
         """
-        open_ones = [heard for heard in topics if heard.subscription is not None]
-        waiting: list[tuple[int, Subscription, bytes]] = []
-        for heard in open_ones:
-            waiting += self._waiting_in(heard.subscription)
-        for _, subscription, data in sorted(waiting, key=lambda one: one[0]):
-            subscription.callback(data)
-        for heard in open_ones:
-            self._node.destroy_subscription(heard.subscription)
-            heard.subscription = None
+        heard = [topic.subscription for topic in topics if topic.subscription is not None]
+        try:
+            for _, subscription, data in heapq.merge(*map(self._waiting_in, heard), key=itemgetter(0)):
+                subscription.callback(data)
+        finally:
+            for topic in topics:
+                topic.subscription = None
+            for subscription in heard:
+                self._node.destroy_subscription(subscription)
 
     def _waiting_in(self, subscription: Subscription) -> Iterator[tuple[int, Subscription, bytes]]:
         """The messages that a subscription keeps, which are at most `depth`, each with its source time."""

@@ -62,6 +62,7 @@ def metrics_of(*, found: bool | None, success: bool | None) -> SearchMetrics:
             "not found: no step is left",
         ),
         (None, None, end_of(SearchPhase.SEARCHING), "not found: interrupted"),
+        (False, False, end_of(SearchPhase.STOPPED, message="by [/bold] you"), "not found: by [/bold] you"),
     ],
 )
 def test_verdict(found: bool | None, success: bool | None, end: DemoEnd, told: str) -> None:
