@@ -1,10 +1,12 @@
 """Walks that are drawn by a seed and told truly: enough to learn what is wrong, in a second."""
 
+import dataclasses
 import math
 
 import numpy as np
 
 from robustnav_nodes.instruction.episodes import Instruction
+from robustnav_nodes.instruction.scene import Scene
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES, SeenObject, Trajectory, Viewpoint
 
@@ -16,6 +18,21 @@ FRAMES = (
     "leave the {room} . make a {side} turn when you see the {thing} then wait in the {last} near the {end} .",
     "start in the {room} , pass the {thing} and go {side} . enter the {last} . stop next to the {end} .",
 )
+
+
+def in_mirror(scene: Scene) -> Scene:
+    """What is to the left is to the right, and the other way round."""
+    return dataclasses.replace(
+        scene,
+        xyz_m=scene.xyz_m * (1.0, -1.0, 1.0),
+        yaw_in_rad=-scene.yaw_in_rad,
+        turn_rad=-scene.turn_rad,
+        bearing_rad=-scene.bearing_rad,
+        things={
+            name: dataclasses.replace(seen, bearing_rad=-seen.bearing_rad)
+            for name, seen in scene.things.items()
+        },
+    )
 
 
 def said_walks(homes: int, walks: int, seed: int) -> list[Instruction]:

@@ -14,9 +14,10 @@ from robustnav_nodes.instruction.generated.frames import FRAMES
 from robustnav_nodes.instruction.generated.naming import SAID, plural
 from robustnav_nodes.instruction.generated.room_words import WORDS
 from robustnav_nodes.instruction.generated.survey import Survey, ToldWalk, instructions_of
-from robustnav_nodes.instruction.generated.telling import Clause, tell
+from robustnav_nodes.instruction.generated.telling import Clause, Told, tell
 from robustnav_nodes.instruction.generated.writers import WRITERS
 from robustnav_nodes.instruction.mentions import Mention, concepts_of_name, find_mentions
+from robustnav_nodes.instruction.place_model import expected_at
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import wrapped
 
@@ -280,3 +281,38 @@ def test_frames_say_nothing_by_accident() -> None:
             for mention in find_mentions(said):
                 assert mention.kind != ROOM, (kind, frame)
                 assert mention.kind != OBJECT or mention.concept == "door", (kind, frame)
+
+
+def test_mentions_are_expected_where_the_walk_is_when_they_are_said(surveys: list[Survey]) -> None:
+    """Nearer to the middle of the stretch that their clause speaks of than by their share of the text."""
+    expected, by_share = [], []
+    for surveyed in surveys:
+        for walks in surveyed.walks.values():
+            for walk in walks:
+                for told in walk.told:
+                    tokens = tokenized(told.text)
+                    mentions = find_mentions(tokens)
+                    middles = _middles_of(told, tokens, len(walk.walk) - 1)
+                    for mention, along in zip(mentions, expected_at(tokens, mentions), strict=True):
+                        middle = middles[mention.start]
+                        if middle is not None:
+                            expected.append(along - middle)
+                            centre = mention.start + (mention.length - 1) / 2.0
+                            by_share.append(centre / (len(tokens) - 1) - middle)
+    assert len(expected) > 300
+    assert np.square(expected).mean() < 0.9 * np.square(by_share).mean()
+    assert abs(np.mean(expected)) < abs(np.mean(by_share))
+
+
+def _middles_of(told: Told, tokens: tuple[str, ...], last: int) -> list[float | None]:
+    """How far along the walk the middle of each token's clause is; None where it is in none."""
+    middles: list[float | None] = [None] * len(tokens)
+    at = 0
+    for clause in told.clauses:
+        words = tokenized(clause.text)
+        while at < len(tokens) and tokens[at : at + len(words)] != words:
+            at += 1
+        for k in range(at, min(at + len(words), len(tokens))):
+            middles[k] = (clause.fact.first + clause.fact.last) / 2.0 / last
+        at += len(words)
+    return middles

@@ -1,16 +1,18 @@
 """A side is judged alike in a walk and in its mirror image, and learned from where it was said."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
 from robustnav_nodes.instruction.mentions import find_mentions
-from robustnav_nodes.instruction.scene import Scene, scene_of
+from robustnav_nodes.instruction.scene import scene_of
 from robustnav_nodes.instruction.side_model import (
+    ARRIVING,
     FEATURES,
-    ODD,
+    LEAVING,
+    RANK,
     SIDES,
+    WAY_BY_1,
+    WAY_BY_2,
     learn_sides,
     mirrored,
     side_features,
@@ -18,23 +20,9 @@ from robustnav_nodes.instruction.side_model import (
 )
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import SeenObject, Trajectory, Viewpoint
-from tests.instruction.small_world import said_walks
+from tests.instruction.small_world import in_mirror, said_walks
 
 TOKENS = tokenized("Pass the bed on your left and turn right at the painting.")
-
-
-def in_mirror(scene: Scene) -> Scene:
-    return dataclasses.replace(
-        scene,
-        xyz_m=scene.xyz_m * (1.0, -1.0, 1.0),
-        yaw_in_rad=-scene.yaw_in_rad,
-        turn_rad=-scene.turn_rad,
-        bearing_rad=-scene.bearing_rad,
-        things={
-            name: dataclasses.replace(seen, bearing_rad=-seen.bearing_rad)
-            for name, seen in scene.things.items()
-        },
-    )
 
 
 @pytest.mark.parametrize("number", [0, 1])
@@ -64,8 +52,8 @@ def test_the_leftmost_in_the_mirror_is_the_rightmost() -> None:
     mentions = find_mentions(tokens)
     scene, other = scene_of(walk), in_mirror(scene_of(walk))
     left, right = (side_features(walk_sides(scene), scene, tokens, mentions, 0, sign) for sign in (1.0, -1.0))
-    assert left[0, ODD.stop - 1] > 0.5
-    assert right[0, ODD.stop - 1] < -0.5
+    assert left[0, RANK] > 0.5
+    assert right[0, RANK] < -0.5
     assert np.allclose(side_features(walk_sides(other), other, tokens, mentions, 0, -1.0), left)
 
 
@@ -75,10 +63,26 @@ def test_a_thing_to_the_left_speaks_for_the_left(walk: Trajectory) -> None:
     mentions = find_mentions(TOKENS)
     m = next(k for k, mention in enumerate(mentions) if mention.concept == "left")
     left, right = (side_features(walk_sides(scene), scene, TOKENS, mentions, m, sign) for sign in (1.0, -1.0))
-    arriving, leaving = ODD.stop - 3, ODD.stop - 2  # where the thing stands that was named beside the side
-    assert left[0, arriving] > 0.5
-    assert left[0, leaving] > 0.5
-    assert right[0, arriving] < -0.5
+    assert left[0, ARRIVING] > 0.5
+    assert left[0, LEAVING] > 0.5
+    assert right[0, ARRIVING] < -0.5
+
+
+def test_a_way_to_the_left_of_a_thing_is_a_way_by_its_left_side() -> None:
+    """The couch stands ahead on the right; the way goes straight on, left of it, then to its right."""
+    couch = (SeenObject(name="couch", bearing_rad=-0.6, range_m=1.0),)
+    walk = Trajectory(
+        viewpoints=tuple(
+            Viewpoint(x_m=x, y_m=y, z_m=0.0, yaw_in_rad=0.0, yaw_out_rad=0.0, objects=() if at else couch)
+            for at, (x, y) in enumerate(((0.0, 0.0), (1.0, 0.0), (1.0, -2.0)))
+        )
+    )
+    tokens = tokenized("walk to the left of the couch")
+    scene, mentions = scene_of(walk), find_mentions(tokens)
+    left, right = (side_features(walk_sides(scene), scene, tokens, mentions, 0, sign) for sign in (1.0, -1.0))
+    assert left[0, WAY_BY_1] > 0.2 > -0.2 > right[0, WAY_BY_1]
+    assert right[0, WAY_BY_2] > 0.1 > -0.1 > left[0, WAY_BY_2]
+    assert left[0, ARRIVING] < -0.2  # the couch itself is on the right
 
 
 def test_what_was_said_at_turns_is_learned() -> None:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from robustnav_nodes.instruction.mentions import find_mentions
-from robustnav_nodes.instruction.scene import FAR_M, Scene, scene_of
+from robustnav_nodes.instruction.scene import FAR_M, TO_THE_END, Scene, scene_of, way_ahead_m
 from robustnav_nodes.instruction.side_model import SIDES
 from robustnav_nodes.instruction.thing_beside import nearest_views, outermost, thing_beside
 from robustnav_nodes.instruction.tokens import tokenized
@@ -46,6 +46,8 @@ def scene_with(*things: tuple[str, float, float], steps: int = 3, turn_rad: floa
         ("pass the teddy bear and go on to the left", "teddy bear"),
         ("pass the teddy bear and then go on to the left", None),
         ("walk past the couch . turn left", None),
+        ("take the window to the left of the couch", "couch"),
+        ("pass the window on the left side of the room", None),
         ("left", None),
     ],
 )
@@ -55,6 +57,18 @@ def test_the_thing_of_a_side(text: str, thing: str | None) -> None:
     mentions = find_mentions(tokens)
     m = next(k for k, mention in enumerate(mentions) if mention.concept in SIDES)
     assert thing_beside(scene, tokens, mentions, m) == thing
+
+
+def test_where_the_way_goes_on() -> None:
+    scene = scene_with(
+        steps=4, turn_rad=3.6
+    )  # backwards, so that the last yaw has a negative sine and cosine
+    ahead, aside = way_ahead_m(scene, 1)
+    assert ahead == pytest.approx([1.0, math.cos(3.6), 1.0, 0.0])
+    assert aside == pytest.approx([0.0, math.sin(3.6), 0.0, 0.0], abs=1e-12)
+    far, _ = way_ahead_m(scene, TO_THE_END)
+    assert far == pytest.approx([1.0 + 2.0 * math.cos(3.6), 2.0 * math.cos(3.6), 1.0, 0.0])
+    assert math.atan2(aside[-1], ahead[-1]) == 0.0  # straight on
 
 
 def test_the_nearest_of_several_is_seen() -> None:

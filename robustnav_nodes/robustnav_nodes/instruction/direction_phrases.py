@@ -1,11 +1,15 @@
-"""How a direction is said: "turn left" speaks of a turn, "on your left" of where something stands."""
+"""How a direction is said: "turn left" speaks of a turn, "on your left" of where something stands.
+
+What is on one side may be gone through ("enter the door on the left"), or stand there ("past the couch on the
+left", "the sink is on your left"); or the walk keeps to one side of it ("left of the couch").
+"""
 
 from collections.abc import Sequence
 
 from robustnav_nodes.instruction.mentions import Mention
 
-TURN, SLIGHT_TURN, SHARP_TURN, TOWARDS, BESIDE, OUTERMOST, OTHER = range(7)
-PHRASES = 7
+TURN, SLIGHT_TURN, SHARP_TURN, TOWARDS, BESIDE, THROUGH, STANDING, SIDE_OF, OUTERMOST, OTHER = range(10)
+PHRASES = 10
 TURNS = frozenset({TURN, SLIGHT_TURN, SHARP_TURN})
 
 _SLIGHT = frozenset({"slight", "slightly", "bear", "veer", "veering"})
@@ -16,16 +20,32 @@ _TURNING = frozenset(
         *("curve", "rotate", "turns", "pivot"),
     }
 )
+_GOING = frozenset(
+    {"go", "going", "walk", "walking", "head", "heading", "move", "exit", "step", "continue"}
+)  # "go left" is a turn; "go to the left" is not
+_GOING_THROUGH = frozenset(
+    {"enter", "enters", "entering", "into", "in", "inside", "through", "thru", "take", "exit", "out"}
+)
+_STANDING = frozenset(
+    {
+        *("past", "pass", "passing", "by", "along", "with", "keep", "keeping", "see"),
+        *("is", "are", "be", "have"),
+    }
+)
 _SIDES = frozenset({"left", "right"})
 _OUTERMOST = frozenset({"leftmost", "rightmost"})
 _ENDS = frozenset(".,;:!?")
 _REACH = 4  # tokens before the word that are looked at
+_REACH_OF_VERBS = 9  # the same, for what is done with something on one side
 
 
 def phrase_of(tokens: Sequence[str], mention: Mention) -> int:
     """Which of the phrases above, from TURN to OTHER, the words around a direction make."""
     if mention.concept in _OUTERMOST:
         return OUTERMOST
+    after = tuple(tokens[mention.start + mention.length :][:2])
+    if after == ("side", "of") or (after[:1] == ("of",) and after[1:] != ("you",)):
+        return SIDE_OF
     before: list[str] = []  # the nearest first
     for at in range(mention.start - 1, max(0, mention.start - _REACH) - 1, -1):
         if tokens[at] in _ENDS or tokens[at] in _SIDES:
@@ -35,9 +55,25 @@ def phrase_of(tokens: Sequence[str], mention: Mention) -> int:
     for phrase, words in ((SLIGHT_TURN, _SLIGHT), (SHARP_TURN, _SHARP), (TURN, _TURNING)):
         if any(token in words for token in before):
             return phrase
-    after = tokens[mention.start + mention.length : mention.start + mention.length + 1]
-    if "to" in before[:2]:
-        return TOWARDS
-    if any(token in ("on", "at", "from", "along") for token in before[:3]) or tuple(after) == ("side",):
-        return BESIDE
+    if before and before[0] in _GOING:
+        return TURN
+    towards = "to" in before[:2]
+    if (
+        towards
+        or any(token in ("on", "at", "from", "along") for token in before[:3])
+        or after[:1] == ("side",)
+    ):
+        return _of_one_side(tokens, mention, TOWARDS if towards else BESIDE)
     return OTHER
+
+
+def _of_one_side(tokens: Sequence[str], mention: Mention, otherwise: int) -> int:
+    """THROUGH or STANDING by the nearest word before that tells, up to a comma or the end of a sentence."""
+    for at in range(mention.start - 1, max(0, mention.start - _REACH_OF_VERBS) - 1, -1):
+        if tokens[at] in _ENDS:
+            break
+        if tokens[at] in _GOING_THROUGH:
+            return THROUGH
+        if tokens[at] in _STANDING:
+            return STANDING
+    return otherwise

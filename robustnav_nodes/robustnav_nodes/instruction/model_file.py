@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_model import IedlModel
 
 SHIPPED = Path(__file__).with_name("weights.npz")
-FORMAT = 4
+FORMAT = 5
 _WORDING = ("embedding", "bias", "out")
 _PLACES = ("mean", "scale", "hidden", "out", "log_share", "climbs")
 

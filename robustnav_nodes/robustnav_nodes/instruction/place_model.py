@@ -21,6 +21,9 @@ CLIMB_EDGES_M = np.array([-1.5, -0.7, -0.25, -0.08, 0.08, 0.25, 0.7, 1.5])
 _NEAR_M = 2.3
 _FADE_M = 2.0
 _EPOCHS = ((10, 2), (10, 2), (60, 6))  # of the networks for things and for sides, by round
+# In the middle the walk is ahead of the text: at x of the text, x + _AHEAD x (1 - x) of the way. Fitted to
+# texts whose parts are known to speak of parts of the walk: 0.32 of people's words, 0.45 of generated ones.
+_AHEAD = 0.35
 _LIMIT = 4.0  # of one mention's log evidence: nothing that is seen or missed decides alone
 
 UP, DOWN = (CONCEPT_NUMBER[DIRECTION, word] for word in ("up", "down"))
@@ -119,10 +122,11 @@ class SaidOnWalk:
     mentions: tuple[Mention, ...]
 
 
-def said_at(tokens: Sequence[str], mentions: Sequence[Mention]) -> Float64:
-    """Where in the text each mention stands, 0..1."""
+def expected_at(tokens: Sequence[str], mentions: Sequence[Mention]) -> Float64:
+    """How far along the walk, 0..1, each mention is to be expected by where it stands in the text alone."""
     last = max(1, len(tokens) - 1)
-    return np.array([(m.start + (m.length - 1) / 2.0) / last for m in mentions], dtype=float)
+    at = np.array([(m.start + (m.length - 1) / 2.0) / last for m in mentions], dtype=float)
+    return at + _AHEAD * at * (1.0 - at)
 
 
 def learn_places(scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: int) -> PlaceModel:
@@ -152,7 +156,7 @@ def learn_places(scenes: Sequence[Scene], said: Sequence[SaidOnWalk], *, seed: i
                 if model is not None and evidence is not None
                 else np.zeros(shape)
             )
-            placed, _ = place_mentions(log_e, said_at(one.tokens, one.mentions))
+            placed, _ = place_mentions(log_e, expected_at(one.tokens, one.mentions))
             for m, mention in enumerate(one.mentions):
                 concept = CONCEPT_NUMBER[mention.kind, mention.concept]
                 if concept >= FIRST_OBJECT:

@@ -15,6 +15,7 @@ from robustnav_nodes.instruction.mentions import concepts_of_name
 from robustnav_nodes.instruction.tokens import tokenized
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES, Trajectory
 
+TO_THE_END = 99  # steps, more than a walk has
 FAR_M = 9.0  # stands for "not seen"
 UNKNOWN_RANGE_M = 2.0  # a detector's object without a distance is near, or it would not have been seen
 OBJECT_INDEX = {concept: k for k, concept in enumerate(OBJECTS)}
@@ -86,6 +87,15 @@ def scene_of(trajectory: Trajectory) -> Scene:
         bearing_rad=bearing,
         things={name: _sightings(seen) for name, seen in views.items()},
     )
+
+
+def way_ahead_m(scene: Scene, steps: int) -> tuple[Float64, Float64]:
+    """(Ahead, to the left) [T] of the viewpoint so many steps on, or of the last one, as seen on arriving."""
+    places = len(scene)
+    x, y = (scene.xyz_m[np.minimum(np.arange(places) + steps, places - 1), :2] - scene.xyz_m[:, :2]).T
+    cos, sin = np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
+    # 0.0 is added since the bearing of (-0.0, 0.0), at the last viewpoint, would be half a turn
+    return cos * x + sin * y + 0.0, cos * y - sin * x + 0.0
 
 
 @cache

@@ -13,15 +13,17 @@ import numpy as np
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.direction_phrases import OUTERMOST, PHRASES, phrase_of
 from robustnav_nodes.instruction.mentions import Mention
-from robustnav_nodes.instruction.scene import FAR_M, Scene
+from robustnav_nodes.instruction.scene import FAR_M, TO_THE_END, Scene, way_ahead_m
 from robustnav_nodes.instruction.thing_beside import nearest_views, outermost, thing_beside
 
 # +1 where the side is the left one.
 SIDES = {"left": 1.0, "leftmost": 1.0, "right": -1.0, "rightmost": -1.0}
 _SOFT_RAD, _SOFT_M, _FADE_M = 0.8, 2.0, 3.0
-_FAR_STEPS = 99
-FEATURES = 32
-ODD = slice(0, 13)  # the columns of `side_features` that change their sign in the mirror
+FEATURES = 37
+ODD = slice(0, 15)  # the columns of `side_features` that change their sign in the mirror
+# The last of these: where the thing stands that is named beside the side, on arriving and on leaving, on
+# which side of it the way goes by, to the next viewpoint and to the one after it, and which of several it is.
+ARRIVING, LEAVING, WAY_BY_1, WAY_BY_2, RANK = range(ODD.stop - 5, ODD.stop)
 _LIMIT = 4.0  # of the log evidence: nothing that is seen or missed decides alone
 _UNITS = 32
 
@@ -42,10 +44,13 @@ class SideModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WalkSides:
-    """A walk as sides see it: `odd` [T, .] changes its sign in the mirror, `even` [T, .] does not."""
+    """A walk as sides see it: `odd` [T, .] changes its sign in the mirror, `even` [T, .] does not; `way_rad`
+    [T, 2] is the bearing of the next viewpoint and of the one after it, straight on where the walk ends.
+    """
 
     odd: Float64
     even: Float64
+    way_rad: Float64
 
 
 def walk_sides(scene: Scene) -> WalkSides:
@@ -59,12 +64,17 @@ def walk_sides(scene: Scene) -> WalkSides:
     with_both = np.tanh((turn[1:-3] + turn[2:-2] + turn[3:-1]) / _SOFT_RAD)
     odd = [around, with_next[:, None], with_both[:, None]]
     even = [np.abs(around), index[:, None] == 0, index[:, None] == 1, index[:, None] >= count - 1]
-    cos, sin = np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
-    for steps in (1, 2, _FAR_STEPS):
-        way = scene.xyz_m[np.minimum(index + steps, count - 1), :2] - scene.xyz_m[:, :2]
-        odd.append(np.tanh((cos * way[:, 1] - sin * way[:, 0]) / _SOFT_M)[:, None])
-        even.append(np.tanh((cos * way[:, 0] + sin * way[:, 1]) / _SOFT_M)[:, None])
-    return WalkSides(odd=np.hstack(odd), even=np.hstack(even).astype(float))
+    bearings = []
+    for steps in (1, 2, TO_THE_END):
+        ahead, aside = way_ahead_m(scene, steps)
+        bearings.append(np.arctan2(aside, ahead))
+        odd.append(np.tanh(aside / _SOFT_M)[:, None])
+        even.append(np.tanh(ahead / _SOFT_M)[:, None])
+    return WalkSides(
+        odd=np.hstack(odd),
+        even=np.hstack(even).astype(float),
+        way_rad=np.column_stack(bearings[:2]),
+    )
 
 
 def side_features(
@@ -75,17 +85,19 @@ def side_features(
     said = phrase_of(tokens, mentions[m])
     phrase = np.zeros((count, PHRASES))
     phrase[:, said] = 1.0
-    beside = np.zeros((count, 4))
+    odd = np.hstack([sign * walk.odd, np.zeros((count, 5))])
+    near = np.zeros(count)
     name = thing_beside(scene, tokens, mentions, m)
     if name is not None:
         ranges, bearing = nearest_views(scene, name)
         near = np.where(ranges < FAR_M, np.exp(-ranges / _FADE_M), 0.0)
-        beside[:, 0] = sign * near * np.sin(bearing)
-        beside[:, 1] = sign * near * np.sin(bearing - scene.turn_rad)
+        odd[:, ARRIVING] = sign * near * np.sin(bearing)
+        odd[:, LEAVING] = sign * near * np.sin(bearing - scene.turn_rad)
+        odd[:, WAY_BY_1] = sign * near * np.sin(walk.way_rad[:, 0] - bearing)
+        odd[:, WAY_BY_2] = sign * near * np.sin(walk.way_rad[:, 1] - bearing)
         if said == OUTERMOST:
-            beside[:, 2] = sign * outermost(scene, name)
-        beside[:, 3] = near
-    return np.hstack([sign * walk.odd, beside[:, :3], walk.even, phrase, beside[:, 3:]])
+            odd[:, RANK] = sign * outermost(scene, name)
+    return np.hstack([odd, walk.even, phrase, near[:, None]])
 
 
 def mirrored(rows: Float64) -> Float64:

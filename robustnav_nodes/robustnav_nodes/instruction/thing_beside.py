@@ -8,6 +8,7 @@ import numpy as np
 
 from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import OBJECT
+from robustnav_nodes.instruction.direction_phrases import SIDE_OF, phrase_of
 from robustnav_nodes.instruction.mentions import Mention
 from robustnav_nodes.instruction.scene import FAR_M, UNKNOWN_RANGE_M, Scene
 
@@ -21,8 +22,8 @@ _ON_THE_WAY_M, _SAME_M = 0.25, 0.6
 def thing_beside(scene: Scene, tokens: Sequence[str], mentions: Sequence[Mention], m: int) -> str | None:
     """The name, of those in `scene.things`, that stands nearest to mention `m`; None: none within reach.
 
-    Within the sentence and up to the mentions beside `m`. Objects that have a concept go by it, others by the
-    detector's own name, where it is written out.
+    Within the sentence and up to the mentions beside `m`; of "left of" something only what is named after it.
+    Objects that have a concept go by it, others by the detector's own name, where it is written out.
     """
     named = [(gap, name) for gap, name in _named_around(tokens, mentions, m) if name in scene.things]
     return min(named, key=lambda one: one[0])[1] if named else None
@@ -32,6 +33,8 @@ def _named_around(tokens: Sequence[str], mentions: Sequence[Mention], m: int) ->
     """(tokens in between, name) of all that may be a thing beside `m`."""
     start, end = mentions[m].start, mentions[m].start + mentions[m].length
     low, high = max(0, start - _REACH - _MOST_WORDS), min(len(tokens), end + _REACH + _MOST_WORDS)
+    if phrase_of(tokens, mentions[m]) == SIDE_OF:
+        low = end
     first = max([low, *(at + 1 for at in range(low, start) if tokens[at] in _ENDS)])
     last = min([high, *(at for at in range(end, high) if tokens[at] in _ENDS)])
     for other, gap in _beside(mentions, m):

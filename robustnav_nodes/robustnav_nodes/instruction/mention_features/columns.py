@@ -11,7 +11,7 @@ from robustnav_nodes.instruction.alignment import place_mentions
 from robustnav_nodes.instruction.concepts import CONCEPT_NUMBER, FIRST_OBJECT
 from robustnav_nodes.instruction.mention_features.replacements import Replacements
 from robustnav_nodes.instruction.mentions import Mention
-from robustnav_nodes.instruction.place_model import PlaceModel, said_at
+from robustnav_nodes.instruction.place_model import PlaceModel, expected_at
 from robustnav_nodes.instruction.scene import Scene
 from robustnav_nodes.instruction.wording import Wording
 
@@ -48,15 +48,15 @@ class Walked:
     """The walk of T viewpoints as the mentions see it.
 
     `at_places` float64 [T, objects and rooms] is the evidence of every concept, `own` [M, T] that of each
-    mention. `said_at` [M] tells where in the text it stands, 0..1; `placed` and `elsewhere` [M, T] where on
-    the way it belongs, by all evidence and by that of the other mentions only: a wrong word cannot pull the
-    place where it is looked up towards itself.
+    mention. `expected_at` [M] tells how far along the way it is to be expected by its place in the text,
+    0..1; `placed` and `elsewhere` [M, T] where on the way it belongs, by all evidence and by that of the
+    other mentions only: a wrong word cannot pull the place where it is looked up towards itself.
     """
 
     scene: Scene
     at_places: Float64
     own: Float64
-    said_at: Float64
+    expected_at: Float64
     placed: Float64
     elsewhere: Float64
 
@@ -76,8 +76,8 @@ class Walked:
 
     @property
     def by_text(self) -> NDArray[np.int64]:
-        """int64 [M]: the viewpoint as far along the way as the mention is along the text."""
-        return np.rint(self.said_at * self.last).astype(np.int64)
+        """int64 [M]: the viewpoint where it is to be expected by its place in the text."""
+        return np.rint(self.expected_at * self.last).astype(np.int64)
 
 
 def told(tokens: Sequence[str], mentions: Sequence[Mention], wording: Wording) -> Told:
@@ -93,9 +93,11 @@ def told(tokens: Sequence[str], mentions: Sequence[Mention], wording: Wording) -
 def walked(scene: Scene, at_places: Float64, instruction: Told, places: PlaceModel) -> Walked:
     """Place its mentions on a walk; `at_places` is `places.evidence(scene)`."""
     own = places.of_mentions(scene, instruction.tokens, instruction.mentions, at_places)
-    at = said_at(instruction.tokens, instruction.mentions)
+    at = expected_at(instruction.tokens, instruction.mentions)
     placed, elsewhere = place_mentions(own, at)
-    return Walked(scene=scene, at_places=at_places, own=own, said_at=at, placed=placed, elsewhere=elsewhere)
+    return Walked(
+        scene=scene, at_places=at_places, own=own, expected_at=at, placed=placed, elsewhere=elsewhere
+    )
 
 
 class Columns:

@@ -12,7 +12,7 @@ from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.concepts import DIRECTION
 from robustnav_nodes.instruction.direction_phrases import OUTERMOST, TURNS, phrase_of
 from robustnav_nodes.instruction.mention_features.columns import Columns, Told, Walked
-from robustnav_nodes.instruction.scene import FAR_M, OBJECT_INDEX
+from robustnav_nodes.instruction.scene import FAR_M, OBJECT_INDEX, TO_THE_END, way_ahead_m
 from robustnav_nodes.instruction.side_model import SIDES
 from robustnav_nodes.instruction.thing_beside import nearest_views, outermost, thing_beside
 from robustnav_nodes.instruction.trajectory import ROOM_TYPES
@@ -20,7 +20,6 @@ from robustnav_nodes.instruction.trajectory import ROOM_TYPES
 _UP = {"up": 1.0, "down": -1.0}
 _TURNED_RAD = 0.6  # what counts as a turn that people mention
 _SOFT_RAD = 0.8
-_TO_THE_END = 99
 _LEAST = 1e-9
 _STAIRS = OBJECT_INDEX["stairs"]
 _PORCH = ROOM_TYPES.index("porch")
@@ -98,44 +97,48 @@ def _add_ordinal_turns(columns: Columns, said: Told, walk: Walked, sign: Float64
 
 def _add_way_ahead(columns: Columns, walk: Walked, sign: Float64) -> None:
     """Where the way goes on, seen from each viewpoint on arriving."""
-    scene = walk.scene
-    index, cos, sin = np.arange(len(scene)), np.cos(scene.yaw_in_rad), np.sin(scene.yaw_in_rad)
-    for steps in (1, 2, _TO_THE_END):
-        there = scene.xyz_m[np.minimum(index + steps, walk.last), :2] - scene.xyz_m[:, :2]
-        aside = cos * there[:, 1] - sin * there[:, 0]
-        ahead = cos * there[:, 0] + sin * there[:, 1]
+    for steps in (1, 2, TO_THE_END):
+        ahead, aside = way_ahead_m(walk.scene, steps)
         columns.add(f"aside_{steps}", sign * (walk.elsewhere @ aside))
         columns.add(f"ahead_{steps}", walk.elsewhere @ ahead)
         columns.add(f"aside_{steps}_by_text", sign * aside[walk.by_text])
 
 
-_BESIDE = ("side", "side_leaving", "side_top", "side_end", "range", "outermost", "outermost_top")
+_BESIDE = (
+    *("side", "side_leaving", "side_top", "side_end", "range", "way_by_1", "way_by_2", "way_by_top"),
+    *("outermost", "outermost_top"),
+)
 
 
 def _add_things_beside(columns: Columns, said: Told, walk: Walked, sign: Float64) -> None:
-    """Where the nearest thing named beside a side stands, and whether it is the outermost of several."""
-    found = np.full((len(_BESIDE), len(said)), np.nan)
+    """Where the nearest thing named beside a side stands, on which side of it the way goes on, and whether it
+    is the outermost of several.
+    """
+    found = {name: np.full(len(said), np.nan) for name in _BESIDE}
     scene = walk.scene
+    way_1, way_2 = (np.arctan2(aside, ahead) for ahead, aside in (way_ahead_m(scene, k) for k in (1, 2)))
     for m in np.flatnonzero(~np.isnan(sign)).tolist():
-        name = thing_beside(scene, said.tokens, said.mentions, m)
-        if name is None:
+        thing = thing_beside(scene, said.tokens, said.mentions, m)
+        if thing is None:
             continue
-        ranges, bearing = nearest_views(scene, name)
+        ranges, bearing = nearest_views(scene, thing)
         share = np.where(ranges < FAR_M, walk.elsewhere[m] / (0.5 + ranges), 0.0)
         share /= max(float(share.sum()), _LEAST)
         top = int(share.argmax())
-        found[:5, m] = (
-            sign[m] * float(share @ np.sin(bearing)),
-            sign[m] * float(share @ np.sin(bearing - scene.turn_rad)),
-            sign[m] * math.sin(bearing[top]),
-            sign[m] * math.sin(bearing[-1]) if ranges[-1] < FAR_M else math.nan,
-            ranges[top],
-        )
+        found["side"][m] = sign[m] * float(share @ np.sin(bearing))
+        found["side_leaving"][m] = sign[m] * float(share @ np.sin(bearing - scene.turn_rad))
+        found["side_top"][m] = sign[m] * math.sin(bearing[top])
+        if ranges[-1] < FAR_M:
+            found["side_end"][m] = sign[m] * math.sin(bearing[-1])
+        found["range"][m] = ranges[top]
+        found["way_by_1"][m] = sign[m] * float(share @ np.sin(way_1 - bearing))
+        found["way_by_2"][m] = sign[m] * float(share @ np.sin(way_2 - bearing))
+        found["way_by_top"][m] = sign[m] * math.sin(way_1[top] - bearing[top])
         if phrase_of(said.tokens, said.mentions[m]) == OUTERMOST:
-            rank = outermost(scene, name)
-            found[5, m] = sign[m] * float(walk.elsewhere[m] @ rank)
-            found[6, m] = sign[m] * rank[int((walk.elsewhere[m] * np.abs(rank)).argmax())]
-    for name, values in zip(_BESIDE, found, strict=True):
+            rank = outermost(scene, thing)
+            found["outermost"][m] = sign[m] * float(walk.elsewhere[m] @ rank)
+            found["outermost_top"][m] = sign[m] * rank[int((walk.elsewhere[m] * np.abs(rank)).argmax())]
+    for name, values in found.items():
         columns.add(f"beside_{name}", values)
 
 
@@ -167,8 +170,8 @@ def _add_room_changes(columns: Columns, walk: Walked) -> None:
     change = rooms[walk.after] - rooms[walk.before]
     columns.add("room_change", walk.elsewhere @ np.abs(change).sum(axis=1))
     columns.add("porch_change", walk.elsewhere @ change[:, _PORCH])
-    columns.add("porch_start", np.full(len(walk.said_at), rooms[0, _PORCH]))
-    columns.add("porch_end", np.full(len(walk.said_at), rooms[-1, _PORCH]))
+    columns.add("porch_start", np.full(len(walk.expected_at), rooms[0, _PORCH]))
+    columns.add("porch_end", np.full(len(walk.expected_at), rooms[-1, _PORCH]))
 
 
 def add_linked_things(columns: Columns, said: Told, walk: Walked) -> None:

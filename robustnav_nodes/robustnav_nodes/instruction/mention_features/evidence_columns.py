@@ -25,11 +25,11 @@ def add_place(columns: Columns, walk: Walked) -> None:
     """How far along the way, and how surely."""
     along = np.arange(len(walk.scene)) / max(1, walk.last)
     at = walk.elsewhere @ along
-    columns.add("places", np.full(len(walk.said_at), float(len(walk.scene))))
+    columns.add("places", np.full(len(walk.expected_at), float(len(walk.scene))))
     columns.add("at", at)
     columns.add("at_with_own", walk.placed @ along)
     columns.add("at_width", np.sqrt(np.maximum(walk.elsewhere @ along**2 - at**2, 0.0)))
-    columns.add("ahead_of_text", at - walk.said_at)
+    columns.add("ahead_of_text", at - walk.expected_at)
 
 
 def add_evidence(columns: Columns, said: Told, walk: Walked, known: Knowledge) -> Float64:
