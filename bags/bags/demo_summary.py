@@ -32,7 +32,7 @@ def show_summary(console: Console, end: DemoEnd, bag: Path, logs: Path) -> bool:
 
 def _table(metrics: SearchMetrics, end: DemoEnd, bag: Path, picture: Path, logs: Path) -> Table:
     table = Table(show_header=False)
-    table.add_row("object", metrics.target)
+    table.add_row("object", escape(metrics.target))
     table.add_row("steps", str(metrics.steps))
     table.add_row(
         "path length", f"{_number(metrics.path_length_m)} m (shortest {_number(metrics.shortest_path_m)} m)"
