@@ -15,7 +15,7 @@ NODES = sorted(path for path in SOURCES if path.name == "node.py" and path.paren
 
 # The wiring: a node.py, what all nodes share, the people's side, the bags (the recorder), the command line.
 MAY_KNOW_ROS = ("robustnav_nodes/graph/", "robustnav_nodes/chat/", "bags/bags/")
-SHARED = {"search_space"}
+SHARED = {"search_space", "worker_pool"}
 HARMLESS = {-1, 0, 1, 2, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9}
 
 

@@ -1,10 +1,7 @@
 import dataclasses
 import importlib.util
-import os
-import signal
 import subprocess
 import sys
-import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -189,27 +186,6 @@ class TestPlay:
         assert len(played) == 4 * len(QUICK)
         assert without_times(play(job)) == without_times(played)
 
-    def test_processes_end_with_a_command_that_is_killed(self, tmp_path):
-        script = tmp_path / "run.py"
-        script.write_text(
-            "import multiprocessing, time\n"
-            "from robustnav_nodes.benchmarks.contestants import contestants\n"
-            "from robustnav_nodes.benchmarks.search_plan import suite_jobs\n"
-            "from robustnav_nodes.benchmarks.search_workers import play_here\n"
-            "if __name__ == '__main__':\n"
-            "    chosen = contestants(['random'], dock=False, simulations=64)\n"
-            "    jobs = suite_jobs('easy-noisy', seed=1, episodes=1000, contestants=chosen)\n"
-            "    for _ in play_here(jobs, 2):\n"
-            "        print(*(child.pid for child in multiprocessing.active_children()), flush=True)\n"
-        )
-        with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as command:
-            children = [int(word) for word in command.stdout.readline().split()]
-            command.send_signal(signal.SIGKILL)
-        assert len(children) == 2
-        deadline_s = time.monotonic() + 10.0
-        while any(alive(child) for child in children):
-            assert time.monotonic() < deadline_s, children
-
     @pytest.mark.skipif(importlib.util.find_spec("ray") is not None, reason="Ray is installed")
     def test_without_ray_it_says_what_to_install(self):
         with pytest.raises(BadParameterError, match=r"pip install 'robustnav\[cluster\]'"):
@@ -227,14 +203,6 @@ class TestPlay:
         here = [played for of_scene in play_here(jobs, 1) for played in of_scene]
         on_ray = [played for of_scene in play_on_ray(jobs, "local") for played in of_scene]
         assert without_times(here) == without_times(on_ray)
-
-
-def alive(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 class TestFolders:

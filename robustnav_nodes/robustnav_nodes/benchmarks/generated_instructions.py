@@ -1,10 +1,8 @@
 """Instructions in simulated homes as a pack: homes by seed, walks, many writers, errors put in."""
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +21,7 @@ from robustnav_nodes.instruction.generated.pack_rows import (
 from robustnav_nodes.instruction.generated.survey import Survey, instructions_of, survey
 from robustnav_nodes.instruction.pack_errors import TRAIN, write_errors
 from robustnav_nodes.instruction.pack_writing import PackWriter
+from robustnav_nodes.worker_pool import worker_pool
 
 VAL_SEEN, VAL_UNSEEN = "val_seen", "val_unseen"
 # Every data seed has two stretches of home seeds of its own: one to train in, one that nobody trains in.
@@ -94,7 +93,7 @@ def generated_instructions(
     if workers == 1:
         yield from _told(map(instructions_at, homes), len(homes), say)
         return
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with worker_pool(workers) as pool:
         yield from _told(pool.map(instructions_at, homes, chunksize=_HOMES_A_JOB), len(homes), say)
 
 
@@ -134,7 +133,7 @@ def _surveyed(plan: GenerationPlan, workers: int, advanced: Callable[[int], obje
     lines = _Lines()
     numbers = range(plan.homes + plan.unseen)
     jobs = [(plan, numbers[at : at + _HOMES_A_JOB]) for at in range(0, len(numbers), _HOMES_A_JOB)]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with worker_pool(workers) as pool:
         for done in pool.map(_survey_homes, jobs) if workers > 1 else map(_survey_homes, jobs):
             lines.add(done)
             advanced(_HOMES_A_JOB)

@@ -1,19 +1,16 @@
 """Plays scenes on all cores of this machine, or on those of a Ray cluster."""
 
-import multiprocessing
-import os
-import signal
 import socket
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import partial
-from threading import Thread
 
 from robustnav_msgs_py.errors import BadParameterError, GraphError
 from robustnav_nodes.benchmarks.search_plan import PlayedEpisode, SceneJob, play
 from robustnav_nodes.benchmarks.search_suite import NOISY, make_scene
+from robustnav_nodes.worker_pool import worker_pool
 
 KNOCK_TIMEOUT_S = 5.0
 
@@ -27,9 +24,7 @@ def play_here(jobs: Sequence[SceneJob], workers: int) -> Iterator[list[PlayedEpi
         warm_up(jobs[0])
         yield from map(play, jobs)
         return
-    context = multiprocessing.get_context("spawn")  # forked, numba's and numpy's threads would be missing
-    count = min(workers, len(jobs))
-    with ProcessPoolExecutor(count, context, initializer=_begin_worker, initargs=(jobs[0],)) as pool:
+    with worker_pool(min(workers, len(jobs)), partial(warm_up, jobs[0])) as pool:
         running = [pool.submit(play, job) for job in jobs]
         try:
             for done in as_completed(running):
@@ -38,10 +33,6 @@ def play_here(jobs: Sequence[SceneJob], workers: int) -> Iterator[list[PlayedEpi
             raise GraphError(
                 "a worker process died, of too little memory perhaps: run with fewer --workers"
             ) from error
-        finally:
-            if not all(each.done() for each in running):  # after an error, or Ctrl-C
-                for child in multiprocessing.active_children():
-                    child.terminate()
 
 
 def play_on_ray(jobs: Sequence[SceneJob], address: str) -> Iterator[list[PlayedEpisode]]:
@@ -99,17 +90,3 @@ def _play_warm(job: SceneJob) -> list[PlayedEpisode]:
         warm_up(job)
         _is_warm = True
     return play(job)
-
-
-def _begin_worker(job: SceneJob) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the command, and with it this process
-    Thread(target=_end_with_parent, daemon=True).start()
-    warm_up(job)
-
-
-def _end_with_parent() -> None:
-    """A pool's process would outlive a parent that was killed."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)

@@ -2,10 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -24,6 +22,7 @@ from robustnav_nodes.detection.learned.training_pictures import (
     load_pictures,
     save_objects,
 )
+from robustnav_nodes.worker_pool import worker_pool
 
 if TYPE_CHECKING:  # the simulator stands on this package
     from sim_bridge.homes.home import Home, SmallObject
@@ -91,7 +90,7 @@ def render_pictures(
         np.lib.format.open_memmap(folder / PIXELS_FILE, mode="w+", dtype=np.uint8, shape=shape).flush()
         jobs = [(plan, folder / PIXELS_FILE, home) for home in range(plan.homes)]
         tables = []
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        with worker_pool(workers) as pool:
             for table in pool.map(_render_home, jobs) if workers > 1 else map(_render_home, jobs):
                 tables.append(table)
                 advanced()
