@@ -46,9 +46,39 @@ from robustnav_nodes.instruction.tokens import tokenized
         ("stop at the couch right side", BESIDE),
         ("make a turn . left is the couch", OTHER),
         ("left", OTHER),
+        ("proceed left", TURN),
+        ("walk right past the couch", TURN),
+        ("take two steps to the left", TOWARDS),
+        ("take the stairs going up on your left", THROUGH),
+        ("take 12 steps to the left", TOWARDS),
+        ("take the steps to the left", THROUGH),
+        ("wait in front of the door on the left", STANDING),
+        ("exit the front door on the left", THROUGH),
+        ("enter and stop at the table on your left", BESIDE),
+        ("enter and walk to the door on the left", BESIDE),
+        ("walk into the room on the left", THROUGH),
+        ("stand on the left hand side of the bed", SIDE_OF),
+        ("the couch on the left side of you", BESIDE),
+        ("walk along the left side of the room", SIDE_OF),
     ],
 )
 def test_phrases(text: str, phrase: int) -> None:
     tokens = tokenized(text)
     sides = [m for m in find_mentions(tokens) if m.kind == "direction"]
     assert phrase_of(tokens, sides[-1]) == phrase
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "walk left past the couch",
+        "go left down the hallway",
+        "take two steps to the left",
+        "enter the door on the left side",
+        "keep to the left of the bed",
+        "pass the couch on your left",
+    ],
+)
+def test_the_mirrored_text_is_the_same_phrase(text: str) -> None:
+    left, right = tokenized(text), tokenized(text.replace("left", "right"))
+    assert phrase_of(left, find_mentions(left)[-1]) == phrase_of(right, find_mentions(right)[-1])

@@ -37,6 +37,7 @@ def instructions(seed: int, count: int = 400) -> LearnedRows:
         episode=np.repeat(np.arange(count), lengths),
         kind=np.zeros(lengths.sum(), dtype=np.int64),
         wrong=np.concatenate(wrong).astype(np.int64),
+        error_type=np.zeros(count, dtype=np.int64),
         label=np.array([int(odd.any()) for odd in wrong]),
         names=NAMES,
         blind=len(CATEGORIES),

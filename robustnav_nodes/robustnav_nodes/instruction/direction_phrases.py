@@ -6,6 +6,7 @@ left", "the sink is on your left"); or the walk keeps to one side of it ("left o
 
 from collections.abc import Sequence
 
+from robustnav_nodes.instruction.concepts import GOING
 from robustnav_nodes.instruction.mentions import Mention
 
 TURN, SLIGHT_TURN, SHARP_TURN, TOWARDS, BESIDE, THROUGH, STANDING, SIDE_OF, OUTERMOST, OTHER = range(10)
@@ -20,9 +21,6 @@ _TURNING = frozenset(
         *("curve", "rotate", "turns", "pivot"),
     }
 )
-_GOING = frozenset(
-    {"go", "going", "walk", "walking", "head", "heading", "move", "exit", "step", "continue"}
-)  # "go left" is a turn; "go to the left" is not
 _GOING_THROUGH = frozenset(
     {"enter", "enters", "entering", "into", "in", "inside", "through", "thru", "take", "exit", "out"}
 )
@@ -32,6 +30,15 @@ _STANDING = frozenset(
         *("is", "are", "be", "have"),
     }
 )
+# What was said before these was done with something else.
+_NEXT_ACTION = frozenset(
+    {
+        *("go", "walk", "head", "continue", "proceed", "move", "turn", "reach", "find", "face"),
+        *("stop", "wait", "stand", "stopping", "then"),
+    }
+)
+_COUNTS = frozenset({"few", "couple", "several", "one", "two", "three", "four", "five", "six"})
+_GOING_OR_LEAVING = GOING | {"exit"}  # "exit left", as "go left"
 _SIDES = frozenset({"left", "right"})
 _OUTERMOST = frozenset({"leftmost", "rightmost"})
 _ENDS = frozenset(".,;:!?")
@@ -43,8 +50,10 @@ def phrase_of(tokens: Sequence[str], mention: Mention) -> int:
     """Which of the phrases above, from TURN to OTHER, the words around a direction make."""
     if mention.concept in _OUTERMOST:
         return OUTERMOST
-    after = tuple(tokens[mention.start + mention.length :][:2])
-    if after == ("side", "of") or (after[:1] == ("of",) and after[1:] != ("you",)):
+    after = tuple(tokens[mention.start + mention.length :][:4])
+    after = after[1:] if after[:1] == ("hand",) else after
+    of_what = after[1:] if after[:1] == ("side",) else after
+    if of_what[:1] == ("of",) and of_what[1:2] != ("you",):
         return SIDE_OF
     before: list[str] = []  # the nearest first
     for at in range(mention.start - 1, max(0, mention.start - _REACH) - 1, -1):
@@ -55,7 +64,7 @@ def phrase_of(tokens: Sequence[str], mention: Mention) -> int:
     for phrase, words in ((SLIGHT_TURN, _SLIGHT), (SHARP_TURN, _SHARP), (TURN, _TURNING)):
         if any(token in words for token in before):
             return phrase
-    if before and before[0] in _GOING:
+    if before and before[0] in _GOING_OR_LEAVING:
         return TURN
     towards = "to" in before[:2]
     if (
@@ -68,12 +77,13 @@ def phrase_of(tokens: Sequence[str], mention: Mention) -> int:
 
 
 def _of_one_side(tokens: Sequence[str], mention: Mention, otherwise: int) -> int:
-    """THROUGH or STANDING by the nearest word before that tells, up to a comma or the end of a sentence."""
+    """THROUGH or STANDING by the nearest word before that tells, within what is said of the same action."""
     for at in range(mention.start - 1, max(0, mention.start - _REACH_OF_VERBS) - 1, -1):
-        if tokens[at] in _ENDS:
+        counted = at > 0 and (tokens[at - 1] in _COUNTS or tokens[at - 1].isdigit())
+        if tokens[at] in _ENDS or tokens[at] in _NEXT_ACTION or (tokens[at] == "steps" and counted):
             break
+        if tokens[at] in _STANDING or tuple(tokens[at : at + 2]) == ("in", "front"):
+            return STANDING
         if tokens[at] in _GOING_THROUGH:
             return THROUGH
-        if tokens[at] in _STANDING:
-            return STANDING
     return otherwise

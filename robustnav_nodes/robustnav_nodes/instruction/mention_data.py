@@ -29,6 +29,7 @@ class LearnedRows:
     episode: NDArray[np.int64]
     kind: NDArray[np.int64]  # an index into KINDS
     wrong: NDArray[np.int64]
+    error_type: NDArray[np.int64]  # by episode, an index into ERROR_TYPES; a clean one has that of its pair
     label: NDArray[np.int64]  # by episode
     names: tuple[str, ...]  # of the columns of `values`
     blind: int
@@ -64,6 +65,7 @@ def rows_of(
     evidence: dict[tuple[int, int], Float64] = {}
     described: dict[tuple[int, tuple[str, ...]], tuple[tuple[Mention, ...], MentionRows]] = {}
     names: tuple[str, ...] = ()
+    types = list(ERROR_TYPES)
     blind = 0
     for number, one in enumerate(episodes):
         walk = id(one.trajectory)
@@ -95,6 +97,7 @@ def rows_of(
         episode=np.array(episode, dtype=np.int64),
         kind=np.array(kind, dtype=np.int64),
         wrong=np.array(wrong, dtype=np.int64),
+        error_type=np.array([types.index(one.error_type) for one in episodes], dtype=np.int64),
         label=np.array([one.label for one in episodes], dtype=np.int64),
         names=names,
         blind=blind,
@@ -120,6 +123,7 @@ def part_of(rows: LearnedRows, episodes: NDArray[np.bool_]) -> LearnedRows:
         episode=number[rows.episode[kept]],
         kind=rows.kind[kept],
         wrong=rows.wrong[kept],
+        error_type=rows.error_type[episodes],
         label=rows.label[episodes],
         names=rows.names,
         blind=rows.blind,

@@ -1,8 +1,7 @@
 """Our model: every mention is judged by what was seen while it was being walked; one wrong one is enough.
 
 Boosted trees and a small transformer score the rows of `mention_features`; the mean of their log odds counts.
-An instruction is wrong where one of its mentions is (noisy-or), on a scale that makes the score a
-probability. A blind model is the same without all that was seen.
+`score_scale` makes one score of it. A blind model is the same without all that was seen.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,24 +19,21 @@ from robustnav_nodes.instruction.mention_features.rows import mention_rows
 from robustnav_nodes.instruction.mention_network import MentionNetwork
 from robustnav_nodes.instruction.mentions import Mention, find_mentions
 from robustnav_nodes.instruction.scene import Scene, scene_of
+from robustnav_nodes.instruction.score_scale import ScoreScale
 from robustnav_nodes.instruction.trajectory import Trajectory
 from robustnav_nodes.instruction.trees import Trees, mean_log_odds
 from robustnav_nodes.instruction.verdict import Verdict
 
-SURELY_RIGHT = -9.0  # log odds of an instruction in which nothing can be wrong
 MAX_PLACES = 60  # of a longer walk so many, evenly spread, are looked at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scorer:
-    """Trees by kind of mention, and one network for all; blind ones see wording only.
-
-    `calibration` [offset, factor] makes the log odds of an instruction those of a probability.
-    """
+    """Trees by kind of mention, and one network for all; blind ones see wording only."""
 
     trees: Mapping[str, tuple[Trees, ...]]
     network: MentionNetwork
-    calibration: Float64
+    scale: ScoreScale
     blind: bool
 
     def mention_odds(self, rows: NDArray[np.float32], kinds: Sequence[str], blind_columns: int) -> Float64:
@@ -48,10 +44,9 @@ class Scorer:
         odds: Float64 = (odds_of_trees(self.trees, seen, kinds) + self.network.log_odds(seen)) / 2.0
         return odds
 
-    def error_odds(self, odds: Float64) -> float:
+    def error_odds(self, odds: Float64, kinds: Sequence[str]) -> float:
         """Log odds that the instruction is wrong, from those of its mentions."""
-        offset, factor = self.calibration
-        return float(offset + factor * noisy_or(odds))
+        return self.scale.log_odds(odds, np.array([KINDS.index(kind) for kind in kinds], dtype=np.int64))
 
 
 def odds_of_trees(
@@ -64,12 +59,6 @@ def odds_of_trees(
         if of_kind.any():
             odds[of_kind] = mean_log_odds(trees[kind], rows[of_kind])
     return odds
-
-
-def noisy_or(odds: Float64) -> float:
-    """Log odds that at least one is wrong, of mentions of which each is so with its own log odds."""
-    none = -float(np.logaddexp(0.0, odds).sum())  # log P(no mention is wrong)
-    return max(float(np.log(-np.expm1(none)) - none), SURELY_RIGHT) if none else SURELY_RIGHT
 
 
 class MentionModel:
@@ -85,8 +74,10 @@ class MentionModel:
         mentions = find_mentions(tokens)
         odds = self.mention_odds(trajectory, tokens, mentions)
         order = np.argsort(-odds, kind="stable")
+        error_odds = self._scorer.error_odds(odds, [m.kind for m in mentions])
         return Verdict(
-            error_score=float(1.0 / (1.0 + np.exp(-self._scorer.error_odds(odds)))),
+            error_score=float(1.0 / (1.0 + np.exp(-error_odds))),
+            # not shifted, as the score is: the likeliest wrong comes first
             doubts=tuple((mentions[k].start, float(1.0 / (1.0 + np.exp(-odds[k])))) for k in order),
         )
 

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robustnav_msgs_py.errors import BadParameterError
-from robustnav_msgs_py.values import Float64
 from robustnav_nodes.instruction.common_sense import CommonSense
 from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.episodes import Instruction
@@ -31,17 +30,17 @@ from robustnav_nodes.instruction.mention_data import (
 )
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
 from robustnav_nodes.instruction.mention_features.replacements import replacements_of
-from robustnav_nodes.instruction.mention_model import Scorer, noisy_or
+from robustnav_nodes.instruction.mention_model import Scorer
 from robustnav_nodes.instruction.mention_network import NetworkSettings
 from robustnav_nodes.instruction.mentions import find_mentions
 from robustnav_nodes.instruction.model_file import LearnedModel
 from robustnav_nodes.instruction.place_model import SaidOnWalk, learn_places
 from robustnav_nodes.instruction.scene import Scene
+from robustnav_nodes.instruction.score_scale import UNSCALED, JudgedInstructions, learn_scale
 from robustnav_nodes.instruction.surprise import learn_surprise
 from robustnav_nodes.instruction.trees import Trees, trees_of
 from robustnav_nodes.instruction.wording import learn_wording
 
-UNCALIBRATED = np.array([0.0, 1.0])
 _HOMES_TO_CALIBRATE = 12  # one in so many
 
 
@@ -90,7 +89,7 @@ def learn_knowledge(
 
 
 def fold_of_groups(groups: Sequence[str], folds: int, seed: int) -> dict[str, int]:
-    """A fold for each home, by chance; fold 0 is for calibration, and small.
+    """A fold for each home, by chance; fold 0 is for the scale of scores, and small.
 
     Raises BadParameterError for fewer than two homes.
     """
@@ -148,18 +147,6 @@ def _require_both(wrong: NDArray[np.int64], what: str) -> None:
         )
 
 
-def learn_calibration(log_odds: Float64, label: NDArray[np.int64]) -> Float64:
-    """[offset, factor] that make a probability of instructions' log odds, by a model that saw none of them.
-
-    Where the odds tell nothing, no factor above 0 fits, and they stay as they are.
-    """
-    from sklearn.linear_model import LogisticRegression
-
-    regression = LogisticRegression(max_iter=500).fit(log_odds[:, None], label)
-    found = np.array([regression.intercept_[0], regression.coef_[0, 0]])
-    return found if found[1] > 0.0 else UNCALIBRATED
-
-
 def learn_scorer(
     seen: LearnedRows, unseen: LearnedRows, settings: MentionSettings, *, blind: bool, seed: int, say: Say
 ) -> Scorer:
@@ -174,11 +161,22 @@ def learn_scorer(
         say(f"{word}trees for {kind} words are learned")
     network = learn_network(seen, settings.network, blind=blind, seed=seed)
     say(f"the {word}network is learned")
-    scorer = Scorer(trees=trees, network=network, calibration=UNCALIBRATED, blind=blind)
+    scorer = Scorer(trees=trees, network=network, scale=UNSCALED, blind=blind)
     kinds = [KINDS[k] for k in unseen.kind]
     parts = [slice(*ends) for ends in pairwise(unseen.starts.tolist())]
-    odds = [noisy_or(scorer.mention_odds(unseen.values[part], kinds[part], unseen.blind)) for part in parts]
-    return replace(scorer, calibration=learn_calibration(np.array(odds), unseen.label))
+    odds = [scorer.mention_odds(unseen.values[part], kinds[part], unseen.blind) for part in parts]
+    scale = learn_scale(
+        JudgedInstructions(
+            odds=np.concatenate(odds),
+            kind=unseen.kind,
+            instruction=unseen.episode,
+            error_type=unseen.error_type,
+            label=unseen.label,
+        )
+    )
+    shifts = ", ".join(f"{kind} {shift:+.2f}" for kind, shift in zip(KINDS, scale.shifts, strict=True))
+    say(f"{word}doubts are shifted by kind: {shifts}")
+    return replace(scorer, scale=scale)
 
 
 def train_mentions(

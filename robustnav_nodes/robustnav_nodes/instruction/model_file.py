@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robustnav_msgs_py.errors import BadFileError
-from robustnav_msgs_py.values import Float64
+from robustnav_msgs_py.errors import BadFileError, BadParameterError
 from robustnav_nodes.instruction.concepts import KINDS
 from robustnav_nodes.instruction.injection import Protocol
 from robustnav_nodes.instruction.mention_features.columns import Knowledge
@@ -25,6 +24,7 @@ from robustnav_nodes.instruction.mention_model import MentionModel, Scorer
 from robustnav_nodes.instruction.mention_network import network_from_arrays
 from robustnav_nodes.instruction.panorama import SEMANTIC, PanoramicEncoder, SemanticEncoder
 from robustnav_nodes.instruction.place_model import PlaceModel
+from robustnav_nodes.instruction.score_scale import ScoreScale
 from robustnav_nodes.instruction.side_model import FEATURES as SIDE_FEATURES
 from robustnav_nodes.instruction.side_model import SideModel
 from robustnav_nodes.instruction.surprise import Surprise, surprise_from_arrays
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from robustnav_nodes.instruction.iedl_model import IedlModel
 
 SHIPPED = Path(__file__).with_name("weights.npz")
-FORMAT = 5
+FORMAT = 6
 _WORDING = ("embedding", "bias", "out")
 _PLACES = ("mean", "scale", "hidden", "out", "log_share", "climbs")
 
@@ -92,7 +92,8 @@ def save_model(path: Path, model: LearnedModel) -> None:
     scorers = []
     for (protocol, blind), scorer in model.scorers.items():
         name = f"{protocol}/{'blind' if blind else 'seeing'}"
-        arrays[f"{name}/calibration"] = scorer.calibration
+        scale = scorer.scale
+        arrays[f"{name}/scale"] = np.array([scale.offset, scale.factor, *scale.shifts])
         arrays.update(scorer.network.arrays(f"{name}/network"))
         for kind in KINDS:
             for number, trees in enumerate(scorer.trees[kind]):
@@ -136,7 +137,15 @@ def load_model(path: Path) -> LearnedModel:
             f"cannot read the model {str(path)!r}: {error.strerror or error}; `robustnav train iedl --data "
             "PACK` makes one"
         ) from error
-    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+    except (
+        BadParameterError,
+        ValueError,
+        KeyError,
+        TypeError,
+        EOFError,
+        zipfile.BadZipFile,
+        zlib.error,
+    ) as error:
         raise BadFileError(f"{str(path)!r} is no model of instruction errors: {error}") from error
 
 
@@ -154,7 +163,7 @@ def _model(arrays: Mapping[str, NDArray[Any]], header: Mapping[str, Any]) -> Lea
                 for kind in KINDS
             },
             network=network_from_arrays(arrays, f"{name}/network", features),
-            calibration=_calibration(arrays[f"{name}/calibration"]),
+            scale=_scale(arrays[f"{name}/scale"]),
             blind=bool(row["blind"]),
         )
     words = [str(word) for word in arrays["words"]]
@@ -191,11 +200,9 @@ def _other_encoder(trained: str, given: str) -> str:
     return f"this IEDL was trained with {trained}, and --clip-folder holds {given}: name the former's folder"
 
 
-def _calibration(array: NDArray[Any]) -> Float64:
-    found = _shaped(array, (2,)).astype(np.float64)
-    if not np.isfinite(found).all() or found[1] <= 0.0:
-        raise ValueError(f"no calibration is {found.tolist()}")
-    return found
+def _scale(array: NDArray[Any]) -> ScoreScale:
+    offset, factor, *shifts = array.astype(np.float64).tolist()
+    return ScoreScale(offset=offset, factor=factor, shifts=np.array(shifts))
 
 
 def _sides(arrays: Mapping[str, NDArray[Any]]) -> SideModel:
