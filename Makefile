@@ -45,6 +45,9 @@ demo: $(RUN_READY) ## run a search in a simulated home; ARGS="--scenario follow 
 	$(call say,Starting the demo)
 	@$(BIN)/robustnav demo $(ARGS)
 
+# pip would compile all of torch and transformers for them; Python compiles what is loaded, and may keep it here.
+test check: export PYTHONDONTWRITEBYTECODE :=
+
 test: $(DEV_READY) ## run the tests; ARGS="-m slow" or ARGS="tests/belief -k entropy"
 	$(call say,Running the tests)
 ifdef ARGS
@@ -108,5 +111,5 @@ $(RUN_READY): $(MADE) $(INSTALLED)
 
 $(DEV_READY): $(MADE) $(INSTALLED)
 	$(call say,Installing robustnav and the tools for its development (the first time takes a minute or two))
-	@$(call pip_install,$(DEV_EXTRAS))
+	@$(call pip_install,$(DEV_EXTRAS)) --no-compile
 	@touch $@ $(RUN_READY)
