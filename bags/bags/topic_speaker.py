@@ -22,6 +22,7 @@ from bags.playback import Programme
 from bags.played_qos import offer_to_play
 from bags.reader import RawMessage
 from robustnav_msgs_py.errors import BadFileError
+from robustnav_nodes.graph.last_words import RECEIVED_LIMIT_S, not_received
 from robustnav_nodes.graph.message_class import message_class
 
 # What is shorter is no message; an empty one would hold up all that follow it on its topic for good.
@@ -103,17 +104,10 @@ class TopicSpeaker:
             if topic not in OF_EVERY_NODE
         )
 
-    def wait_until_heard(self, limit_s: float) -> bool:
-        """Wait until reliable listeners have acknowledged all; False where they have not within `limit_s`."""
-        deadline_s = time.monotonic() + limit_s
-        heard = [
-            publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline_s - time.monotonic())))
-            for publisher in self._publishers.values()
-        ]
-        return all(heard)
-
     def close(self) -> None:
-        """Take the publishers down."""
+        """Take the publishers down, when reliable listeners have received what was said."""
+        for topic in not_received(self._publishers.values(), time.monotonic() + RECEIVED_LIMIT_S):
+            self._say(topic, "a listener has not received all that was played")
         for publisher in self._publishers.values():
             self._node.destroy_publisher(publisher)
         self._publishers.clear()

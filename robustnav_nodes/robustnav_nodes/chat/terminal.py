@@ -15,10 +15,12 @@ from robustnav_msgs_py import contract
 from robustnav_msgs_py import conversions as wire
 from robustnav_nodes.graph import qos
 from robustnav_nodes.graph.environment import prepare_environment
+from robustnav_nodes.graph.last_words import RECEIVED_LIMIT_S, not_received
 from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.spin import Spinner, stop_on_signals
 
 LAST_ANSWERS_S = 2.0
+LAST_LINE_S = 0.1
 
 
 class Terminal(Node):
@@ -38,6 +40,10 @@ class Terminal(Node):
     def say(self, line: str) -> None:
         """Say one line to the robot."""
         self._lines.publish(wire.text_to_message(line))
+
+    def wait_until_received(self) -> None:
+        """Wait until the robot has the lines, as long as can be expected of it."""
+        not_received([self._lines], time.monotonic() + RECEIVED_LIMIT_S)
 
     def is_heard(self) -> bool:
         """Whether a dialogue listens."""
@@ -76,6 +82,8 @@ def chat(console: Console) -> int:
 
 
 def _leave(spinner: Spinner, terminal: Terminal) -> int:
+    spinner.listen(LAST_LINE_S)  # a line that was typed a moment ago is still to be said
+    terminal.wait_until_received()
     spinner.close()
     terminal.destroy_node()
     rclpy.try_shutdown()

@@ -230,8 +230,8 @@ class LockstepWiring:
         """See Wiring."""
         return self._lockstep.time_ns / NS_PER_S
 
-    def take_down(self) -> None:
-        """See Wiring."""
+    def take_down(self, silent_since_s: float) -> None:
+        """See Wiring; what is said in lock-step has arrived."""
         for timer in self._timers:
             timer.cancelled = True
         for topic, hear in self._heard:

@@ -36,7 +36,7 @@ class ManagerParameters:
     nodes: list[str] = parameter(MANAGED, "nodes to manage, in the order in which they come up")
     period_s: float = parameter(0.25, "how often the nodes are looked at", unit="s", low=0.05, high=10.0)
     answer_timeout_s: float = parameter(
-        3.0, "after which an unanswered question is asked again", unit="s", low=0.5, high=120.0
+        6.0, "after which an unanswered question is asked again", unit="s", low=0.5, high=120.0
     )
     missing_s: float = parameter(
         10.0, "nodes that are not active for longer are a problem", unit="s", low=0.5, high=600.0
@@ -132,8 +132,9 @@ class Manager(GraphNode[ManagerParameters]):
                 self._advance(node, _UP)
         else:
             standing = [node for node in reversed(self._nodes) if node.state in _DOWN]
-            if standing:
-                self._advance(standing[0], _DOWN)
+            if standing:  # all stop what they do before the first is taken down, which may take long
+                working = [node for node in standing if node.state == State.PRIMARY_STATE_ACTIVE]
+                self._advance((working or standing)[0], _DOWN)
         for node in self._nodes:
             self.health.figure(node.name, node.state_name)
         missing = [node.name for node in self._nodes if node.state != State.PRIMARY_STATE_ACTIVE]

@@ -56,6 +56,7 @@ class GraphNode(LifecycleNode, Generic[P]):
         self._held: dict[str, deque[Callable[[], None]]] = {}
         self._waiting_for: list[str] = []
         self._active = False
+        self._silent_since_s = self.steady_s()
         self.declare_parameter(
             "autostart",
             True,
@@ -227,10 +228,11 @@ class GraphNode(LifecycleNode, Generic[P]):
         """Run `deactivate`, then close the publishers."""
         self._attempt("deactivate", self.deactivate)
         self._active = False
+        self._silent_since_s = self.steady_s()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `cleanup`, then take down what `configure` made."""
+        """Run `cleanup`, then take down what `configure` made, once the node's last words are received."""
         self._attempt("clean up", self.cleanup)
         self._take_down()
         return TransitionCallbackReturn.SUCCESS
@@ -244,6 +246,7 @@ class GraphNode(LifecycleNode, Generic[P]):
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Take everything down; the node can be configured again."""
         self._active = False
+        self._silent_since_s = self.steady_s()
         self._attempt("clean up", self.cleanup)
         self._take_down()
         return TransitionCallbackReturn.SUCCESS
@@ -269,7 +272,7 @@ class GraphNode(LifecycleNode, Generic[P]):
             return TransitionCallbackReturn.FAILURE
 
     def _take_down(self) -> None:
-        self._wiring.take_down()
+        self._wiring.take_down(self._silent_since_s)
         self._waiting_for.clear()
         self._held.clear()
 

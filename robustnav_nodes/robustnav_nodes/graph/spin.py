@@ -145,9 +145,12 @@ def run_nodes(factories: Sequence[Callable[[], GraphNode[Any]]], argv: Sequence[
                 if node.state_id == State.PRIMARY_STATE_INACTIVE:
                     node.trigger_activate()
         spinner.spin(lambda: any(node.exit_code is not None for node in nodes))
-        for node in reversed(nodes):
-            if not node.listen_on_s:
-                _shut_down(node)
+        leaving = [node for node in reversed(nodes) if not node.listen_on_s]
+        for node in leaving:  # each may take long to clean up: first all stop what they do
+            if node.is_active:
+                node.trigger_deactivate()
+        for node in leaving:
+            _shut_down(node)
         spinner.listen(max(node.listen_on_s for node in nodes))
         return max(node.exit_code or 0 for node in nodes)
     except RobustnavError as error:

@@ -12,7 +12,7 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from robustnav_msgs_py.contract import Topic
-from robustnav_nodes.graph import qos
+from robustnav_nodes.graph import last_words, qos
 from robustnav_nodes.graph.message_class import message_class
 from robustnav_nodes.graph.worker import Worker
 
@@ -69,8 +69,8 @@ class Wiring(Protocol):
     def steady_s(self) -> float:
         """Wall time that never jumps, from an arbitrary start."""
 
-    def take_down(self) -> None:
-        """Take down everything that was made."""
+    def take_down(self, silent_since_s: float) -> None:
+        """Take down everything that was made; the last word was said at `silent_since_s` of `steady_s`."""
 
 
 class RosWiring:
@@ -148,10 +148,15 @@ class RosWiring:
         """See Wiring."""
         return time.monotonic()
 
-    def take_down(self) -> None:
-        """See Wiring."""
+    def take_down(self, silent_since_s: float) -> None:
+        """See Wiring; waits until what was said is received, for `RECEIVED_LIMIT_S` from then on at most."""
         for worker in self._workers:
             worker.close()
+        lost = last_words.not_received(self._publishers, silent_since_s + last_words.RECEIVED_LIMIT_S)
+        if lost:
+            self._node.get_logger().warning(
+                f"leaving, although a listener has not received all that was said on {', '.join(lost)}"
+            )
         for timer in self._timers:
             self._node.destroy_timer(timer)
         for subscription in self._subscriptions:
