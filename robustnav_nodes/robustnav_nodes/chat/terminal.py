@@ -42,7 +42,7 @@ class Terminal(Node):
         self._lines.publish(wire.text_to_message(line))
 
     def wait_until_received(self) -> None:
-        """Wait until the robot has the lines, as long as can be expected of it."""
+        """Wait until the robot has received the lines, for `RECEIVED_LIMIT_S` at most."""
         not_received([self._lines], time.monotonic() + RECEIVED_LIMIT_S)
 
     def is_heard(self) -> bool:
